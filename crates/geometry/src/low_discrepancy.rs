@@ -1,0 +1,86 @@
+//! Owen-scrambled Sobol' points, as pure functions of their index.
+//!
+//! The first two Sobol' dimensions form a (0, 2)-sequence. Each use of a pair shuffles the index and scrambles the digits
+//! by hash (Burley 2020, "Practical Hash-based Owen Scrambling"), which keeps the net and decorrelates the uses. The
+//! hash is Vegdahl's (2021) improvement of Laine & Karras (2011).
+
+use crate::hash::{mix64, unit_f32};
+
+/// Point `index` of the two-dimensional sequence that `seed` names, in `[0, 1)^2`.
+pub fn owen_sobol_2d(index: u32, seed: u64) -> (f32, f32) {
+    let s = mix64(seed);
+    let shuffled = nested_uniform_shuffle(index, s as u32);
+    let t = mix64(s ^ 0x5851_f42d_4c95_7f2d);
+    let x = owen_scramble_reversed(shuffled, (s >> 32) as u32);
+    let y = owen_scramble_reversed(sobol_second(shuffled).reverse_bits(), t as u32);
+    (unit_f32(x), unit_f32(y))
+}
+
+/// Point `index` of the one-dimensional sequence that `seed` names, in `[0, 1)`.
+pub fn owen_sobol_1d(index: u32, seed: u64) -> f32 {
+    owen_sobol_2d(index, seed).0
+}
+
+/// Owen's scramble of the digits of a number given with its bits reversed; returns it in normal order.
+fn owen_scramble_reversed(reversed: u32, seed: u32) -> u32 {
+    laine_karras(reversed, seed).reverse_bits()
+}
+
+/// A random permutation of the index that maps every aligned power-of-two block onto one.
+fn nested_uniform_shuffle(index: u32, seed: u32) -> u32 {
+    laine_karras(index.reverse_bits(), seed).reverse_bits()
+}
+
+/// A hash whose every output bit depends on lower input bits only (Vegdahl 2021).
+fn laine_karras(mut x: u32, seed: u32) -> u32 {
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^= x.wrapping_mul(0x53a2_2864);
+    x
+}
+
+/// The second Sobol' dimension (direction numbers of the polynomial `x + 1`: Pascal's triangle modulo 2).
+fn sobol_second(mut index: u32) -> u32 {
+    let mut result = 0;
+    let mut v = 1_u32 << 31;
+    while index != 0 {
+        if index & 1 != 0 {
+            result ^= v;
+        }
+        index >>= 1;
+        v ^= v >> 1;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every elementary interval of area 1/n holds exactly one of the first n points.
+    #[test]
+    fn the_pair_is_a_zero_two_sequence_for_every_seed() {
+        for seed in 0..20 {
+            for log_n in [4_u32, 6, 8] {
+                let n = 1_u32 << log_n;
+                let points: Vec<_> = (0..n).map(|i| owen_sobol_2d(i, seed)).collect();
+                for log_x in 0..=log_n {
+                    let (nx, ny) = (1_u32 << log_x, 1_u32 << (log_n - log_x));
+                    let mut seen = vec![false; n as usize];
+                    for &(x, y) in &points {
+                        let cell = (x * nx as f32) as u32 + nx * (y * ny as f32) as u32;
+                        assert!(!std::mem::replace(&mut seen[cell as usize], true));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn seeds_are_independent() {
+        let mean: f32 = (0..4096).map(|s| owen_sobol_1d(3, s)).sum::<f32>() / 4096.0;
+        assert!((mean - 0.5).abs() < 0.02, "{mean}");
+    }
+}

@@ -1,0 +1,1 @@
+//! kirkas-render
