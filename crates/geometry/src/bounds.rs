@@ -109,30 +109,38 @@ impl Bounds3 {
         Self::around_f64(center - half - slack, center + half + slack)
     }
 
-    /// The slab test: the interval of `t` inside the box, or `None`.
+    /// The slab test: the interval of `t` inside the box, or `None`. `inverse_direction` is [`safe_inverse`].
     ///
     /// Monotone: a box that holds this one answers with an interval that holds this one's, because each plane's
     /// distance is a monotone function of the plane and the far side is padded by the same factor
-    /// (Ize 2013, "Robust BVH Ray Traversal", `1 + 2 gamma(3)`).
+    /// (Ize 2013, "Robust BVH Ray Traversal"; see [`FAR_PAD`]). A ray that runs within a face is inside.
     #[inline]
     pub fn intersect(&self, ray: &Ray, inverse_direction: Vec3) -> Option<(f32, f32)> {
-        let t0 = (self.min - ray.origin) * inverse_direction;
-        let t1 = (self.max - ray.origin) * inverse_direction;
-        // `min`/`max` of a NaN (0 * infinity on a box face) with a number keep the number.
-        let near = t0.x.min(t1.x).max(t0.y.min(t1.y)).max(t0.z.min(t1.z)).max(ray.t_min);
-        let far = t0.x.max(t1.x).min(t0.y.max(t1.y)).min(t0.z.max(t1.z)) * FAR_PAD;
-        let far = far.min(ray.t_max);
+        let (mut near, mut far) = (ray.t_min, f32::INFINITY);
+        for axis in 0..3 {
+            let inverse = inverse_direction[axis];
+            let (a, b) = (self.min[axis], self.max[axis]);
+            let (enter, leave) = if inverse.is_sign_negative() { (b, a) } else { (a, b) };
+            let enter = (enter - ray.origin[axis]) * inverse;
+            let leave = (leave - ray.origin[axis]) * inverse;
+            // `0 * infinity`, a ray within a face, is NaN: it loses both comparisons and so limits nothing.
+            near = if enter > near { enter } else { near };
+            far = if leave < far { leave } else { far };
+        }
+        far *= FAR_PAD;
+        far = if ray.t_max < far { ray.t_max } else { far };
         (near <= far).then_some((near, far))
     }
 }
 
-const FAR_PAD: f32 = 1.0 + 2.0 * crate::rounding::gamma(3);
+/// How much later than computed a ray is taken to leave a box: `1 + 2 gamma(10)`. 3 roundings are the box test's own; the
+/// other 7 cover a watertight triangle test whose vertices are displaced by a few roundings of their distance.
+pub const FAR_PAD: f32 = 1.0 + 2.0 * crate::rounding::gamma(10);
 
-/// `1 / direction`, with zeros replaced by a huge finite number of the same sign so that no `0 * infinity` appears.
+/// `1 / direction`; a zero gives the infinity of its sign, which [`Bounds3::intersect`] knows how to use.
 #[inline]
 pub fn safe_inverse(direction: Vec3) -> Vec3 {
-    let inv = |d: f32| if d.abs() < 1e-37 { 1e37_f32.copysign(d) } else { 1.0 / d };
-    Vec3::new(inv(direction.x), inv(direction.y), inv(direction.z))
+    Vec3::new(1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z)
 }
 
 #[cfg(test)]
@@ -148,6 +156,22 @@ mod tests {
         assert!((far - 6.0).abs() < 1e-5 && far >= 6.0);
         let miss = Ray::new(Vec3::new(2.0, 0.0, -5.0), Vec3::Z);
         assert_eq!(b.intersect(&miss, safe_inverse(miss.direction)), None);
+    }
+
+    #[test]
+    fn a_ray_within_a_face_is_inside() {
+        let b = Bounds3::from_corners(Vec3::splat(-1.0), Vec3::splat(1.0));
+        for y in [-1.0, 1.0] {
+            for direction in [Vec3::Z, Vec3::new(-0.0, -0.0, 1.0)] {
+                let ray = Ray::new(Vec3::new(0.0, y, -5.0), direction);
+                assert_eq!(b.intersect(&ray, safe_inverse(direction)).unwrap().0, 4.0);
+                let beside = Ray::new(Vec3::new(0.0, y * 1.0001, -5.0), direction);
+                assert_eq!(b.intersect(&beside, safe_inverse(direction)), None);
+            }
+        }
+        let all = Bounds3::EVERYTHING;
+        let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+        assert_eq!(all.intersect(&ray, safe_inverse(ray.direction)), Some((0.0, f32::INFINITY)));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Transforms that move: key frames, each split into translation, rotation and stretch, interpolated apart.
 //!
 //! After Shoemake & Duff 1992, "Matrix Animation and Polar Decomposition": `M = T R S`; T and S linearly, R by slerp.
+//! Moving groups inside moving groups are products of several such motions.
 
 use crate::elementary::{acos, sin};
 use crate::{Bounds3, DAffine3, DMat3, DVec3};
@@ -9,7 +10,8 @@ use glam::DQuat;
 /// A transform as a function of time. Before the first and after the last key it stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnimatedTransform {
-    keys: Vec<Key>,
+    /// Outermost first; never empty, each with at least one key.
+    links: Vec<Vec<Key>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +25,7 @@ struct Key {
 impl AnimatedTransform {
     /// One that never moves.
     pub fn still(matrix: DAffine3) -> Self {
-        AnimatedTransform { keys: vec![Key::new(0.0, matrix)] }
+        AnimatedTransform { links: vec![vec![Key::new(0.0, matrix)]] }
     }
 
     /// Key frames `(time, matrix)`. `None` when there are none, a time is not after the one before, or a matrix cannot be inverted.
@@ -31,32 +33,18 @@ impl AnimatedTransform {
         let rising = keys.windows(2).all(|w| w[0].0 < w[1].0);
         let sound = keys.iter().all(|k| k.0.is_finite() && crate::transform::is_invertible(&k.1));
         (!keys.is_empty() && rising && sound)
-            .then(|| AnimatedTransform { keys: keys.iter().map(|&(t, m)| Key::new(t, m)).collect() })
+            .then(|| AnimatedTransform { links: vec![keys.iter().map(|&(t, m)| Key::new(t, m)).collect()] })
     }
 
     /// True when it differs between two times.
     pub fn is_moving(&self) -> bool {
-        self.keys.windows(2).any(|w| w[0].matrix != w[1].matrix)
+        self.links.iter().any(|keys| keys.windows(2).any(|w| w[0].matrix != w[1].matrix))
     }
 
     /// The map at `time`.
     pub fn at(&self, time: f64) -> DAffine3 {
-        let next = self.keys.partition_point(|k| k.time <= time);
-        if next == 0 {
-            return self.keys[0].matrix;
-        }
-        if next == self.keys.len() {
-            return self.keys[next - 1].matrix;
-        }
-        let (a, b) = (&self.keys[next - 1], &self.keys[next]);
-        if a.matrix == b.matrix {
-            return a.matrix;
-        }
-        let s = (time - a.time) / (b.time - a.time);
-        let rotation = DMat3::from_quat(slerp(a.rotation, b.rotation, s));
-        let stretch = a.stretch * (1.0 - s) + b.stretch * s;
-        let translation = a.matrix.translation * (1.0 - s) + b.matrix.translation * s;
-        DAffine3 { matrix3: rotation * stretch, translation }
+        let first = at(&self.links[0], time);
+        self.links[1..].iter().fold(first, |m, keys| m * at(keys, time))
     }
 
     /// A box that holds `object` at every time of `[start, end]`.
@@ -72,7 +60,7 @@ impl AnimatedTransform {
         }
         const STEPS: usize = 64;
         let mut times: Vec<f64> = (0..=STEPS).map(|i| start + (end - start) * i as f64 / STEPS as f64).collect();
-        times.extend(self.keys.iter().map(|k| k.time).filter(|t| (start..=end).contains(t)));
+        times.extend(self.key_times().filter(|t| (start..=end).contains(t)));
         times.sort_by(f64::total_cmp);
         let boxes: Vec<Bounds3> = times.iter().map(|&t| object.transformed(&self.at(t))).collect();
         let mut all = boxes.iter().fold(Bounds3::EMPTY, |b, &c| b.union(c));
@@ -95,15 +83,39 @@ impl AnimatedTransform {
         all
     }
 
-    /// This motion followed by a fixed `outer` map.
-    pub fn then(&self, outer: &DAffine3) -> Self {
-        AnimatedTransform { keys: self.keys.iter().map(|k| Key::new(k.time, *outer * k.matrix)).collect() }
+    /// This motion, seen from a space that itself moves by `outer`: `outer(t) * self(t)`.
+    pub fn within(&self, outer: &AnimatedTransform) -> Self {
+        let fixed = |m: &AnimatedTransform| (!m.is_moving()).then(|| m.at(0.0));
+        if let Some((a, b)) = fixed(outer).zip(fixed(self)) {
+            return AnimatedTransform::still(a * b);
+        }
+        AnimatedTransform { links: outer.links.iter().chain(&self.links).cloned().collect() }
     }
 
-    /// The first and last key times.
+    /// The times of all key frames.
     pub fn key_times(&self) -> impl Iterator<Item = f64> + '_ {
-        self.keys.iter().map(|k| k.time)
+        self.links.iter().flatten().map(|k| k.time)
     }
+}
+
+/// One motion's map at `time`.
+fn at(keys: &[Key], time: f64) -> DAffine3 {
+    let next = keys.partition_point(|k| k.time <= time);
+    if next == 0 {
+        return keys[0].matrix;
+    }
+    if next == keys.len() {
+        return keys[next - 1].matrix;
+    }
+    let (a, b) = (&keys[next - 1], &keys[next]);
+    if a.matrix == b.matrix {
+        return a.matrix;
+    }
+    let s = (time - a.time) / (b.time - a.time);
+    let rotation = DMat3::from_quat(slerp(a.rotation, b.rotation, s));
+    let stretch = a.stretch * (1.0 - s) + b.stretch * s;
+    let translation = a.matrix.translation * (1.0 - s) + b.matrix.translation * s;
+    DAffine3 { matrix3: rotation * stretch, translation }
 }
 
 impl Key {
@@ -175,6 +187,16 @@ mod tests {
             let b = unit.transformed(&m.at(f64::from(i) / 1000.0));
             assert_eq!(swept.union(b), swept);
         }
+    }
+
+    #[test]
+    fn a_motion_within_a_motion_is_their_product() {
+        let (a, b) = (spinning(), spinning());
+        let both = a.within(&b);
+        let p = DVec3::new(0.3, -0.2, 1.0);
+        let expected = b.at(0.3).transform_point3(a.at(0.3).transform_point3(p));
+        assert!((both.at(0.3).transform_point3(p) - expected).length() < 1e-12);
+        assert!(both.is_moving() && both.key_times().count() == 4);
     }
 
     #[test]
