@@ -1,1 +1,52 @@
-//! kirkas-accel
+//! Rays against triangles, spheres and user shapes, with instances and motion. Knows nothing of materials or files, and
+//! owns no threads: the caller lends an [`Executor`].
+//!
+//! **A hit has one definition**, shared by every structure. A primitive is hit when its own test passes ([`triangle`],
+//! [`sphere`], [`UserShape`]), its own bounds pass [`Bounds3::intersect`], and `t` lies in the ray's open interval; `t` is
+//! then clamped into the interval within those bounds (and within the bounds of its instance). The nearest `t` wins, ties
+//! go to the lowest (instance, geometry, primitive). Box tests are monotone and equal `t` is never culled, so every tree
+//! of boxes answers exactly as [`AccelKind::BruteForce`] does, to the bit.
+//!
+//! ```
+//! use kirkas_accel::*;
+//! use kirkas_geometry::{Ray, Vec3};
+//! use std::sync::Arc;
+//!
+//! let ball = Sphere { center: Vec3::ZERO, radius: 1.0 };
+//! let scene = SceneGeometry {
+//!     world: vec![Geometry { shape: Shape::Spheres(Arc::new(vec![ball])), opaque: true, mask: u32::MAX }],
+//!     ..SceneGeometry::default()
+//! };
+//! let accel = Accel::build(AccelKind::Bvh2, scene, &Serial)?;
+//! let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), -Vec3::Z);
+//! let hit = accel.closest_hit(&ray, None, 0, &mut Counters::default()).unwrap();
+//! assert_eq!(hit.t, 4.0);
+//! # Ok::<(), AccelError>(())
+//! ```
+
+mod accel;
+mod brute_force;
+mod bvh2;
+mod check;
+mod error;
+mod executor;
+mod hit;
+mod instance;
+mod kind;
+mod prepared_ray;
+mod primitive;
+mod scene_geometry;
+mod search;
+pub mod sphere;
+pub mod triangle;
+
+pub use accel::{Accel, Statistics};
+pub use error::AccelError;
+pub use executor::{Executor, Serial};
+pub use hit::{Counters, Hit, HitFilter, NO_INSTANCE};
+pub use kind::AccelKind;
+pub use prepared_ray::PreparedRay;
+pub use scene_geometry::{Geometry, Instance, SceneGeometry, Shape, Sphere, UserShape};
+
+#[cfg(doc)]
+use kirkas_geometry::Bounds3;

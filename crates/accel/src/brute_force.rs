@@ -1,0 +1,18 @@
+//! Every primitive against every ray: the simple twin that tests every structure.
+
+use crate::prepared_ray::PreparedRay;
+use crate::primitive;
+use crate::search::{Level, Search};
+
+/// Look at each primitive of a level. Instances are the caller's.
+pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &mut Search<ANY>) {
+    for (g, geometry) in level.geometries.iter().enumerate() {
+        for p in 0..geometry.shape.len() as u32 {
+            if search.is_done() {
+                return;
+            }
+            search.counters.primitives_tested += 1;
+            primitive::intersect(&geometry.shape, p, ray, |t, u, v| search.offer(level, g as u32, p, (t, u, v)));
+        }
+    }
+}

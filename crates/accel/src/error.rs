@@ -1,0 +1,95 @@
+//! Why a scene was refused.
+
+use core::fmt;
+
+/// What is wrong with a scene, and where. `aggregate` is `None` for the world itself.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AccelError {
+    /// A vertex, sphere or user bound is NaN or infinite, or a radius is negative.
+    NotFinite {
+        /// Where; `None` is the world itself.
+        aggregate: Option<usize>,
+        /// Index of the geometry there.
+        geometry: usize,
+        /// Index of the vertex, sphere or user primitive.
+        element: usize,
+        /// What it is.
+        what: &'static str,
+    },
+    /// A triangle names a vertex that does not exist.
+    IndexOutOfRange {
+        /// Where; `None` is the world itself.
+        aggregate: Option<usize>,
+        /// Index of the geometry there.
+        geometry: usize,
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex it names.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// More primitives than a structure can address.
+    TooManyPrimitives {
+        /// Where; `None` is the world itself.
+        aggregate: Option<usize>,
+        /// How many there are.
+        count: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// An instance names an aggregate that does not exist.
+    NoSuchAggregate {
+        /// Index of the instance.
+        instance: usize,
+        /// The aggregate it names.
+        aggregate: usize,
+        /// How many aggregates there are.
+        aggregates: usize,
+    },
+    /// An instance's transform cannot be inverted, or holds NaN or infinity, at this time.
+    BadTransform {
+        /// Index of the instance.
+        instance: usize,
+        /// Seconds.
+        time: f64,
+    },
+    /// The shutter ends before it starts, or is not finite.
+    BadShutter {
+        /// Seconds.
+        start: f64,
+        /// Seconds.
+        end: f64,
+    },
+}
+
+impl fmt::Display for AccelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |aggregate: &Option<usize>| match aggregate {
+            None => "the world".to_string(),
+            Some(a) => format!("aggregate {a}"),
+        };
+        match self {
+            Self::NotFinite { aggregate, geometry, element, what } => {
+                write!(f, "{what} {element} of geometry {geometry} in {} is not a finite number", place(aggregate))
+            }
+            Self::IndexOutOfRange { aggregate, geometry, triangle, index, vertices } => write!(
+                f,
+                "triangle {triangle} of geometry {geometry} in {} uses vertex {index}, but there are {vertices}",
+                place(aggregate)
+            ),
+            Self::TooManyPrimitives { aggregate, count, limit } => {
+                write!(f, "{} holds {count} primitives; the limit is {limit}", place(aggregate))
+            }
+            Self::NoSuchAggregate { instance, aggregate, aggregates } => {
+                write!(f, "instance {instance} places aggregate {aggregate}, but there are {aggregates}")
+            }
+            Self::BadTransform { instance, time } => {
+                write!(f, "the transform of instance {instance} cannot be inverted at time {time}")
+            }
+            Self::BadShutter { start, end } => write!(f, "the shutter cannot be open from {start} to {end}"),
+        }
+    }
+}
+
+impl std::error::Error for AccelError {}

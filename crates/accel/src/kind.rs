@@ -1,0 +1,45 @@
+//! The closed list of structures.
+
+/// Which structure finds the hits. All give the same answers to the bit; they differ in speed and memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum AccelKind {
+    /// Every ray against every primitive: the test of all others, and right for a handful of primitives.
+    BruteForce,
+    /// A binary tree of boxes, split by the binned surface-area heuristic.
+    #[default]
+    Bvh2,
+}
+
+impl AccelKind {
+    /// Every kind with its name, in the order of the manual.
+    pub const ALL: [(AccelKind, &str); 2] = [(AccelKind::BruteForce, "brute_force"), (AccelKind::Bvh2, "bvh2")];
+    /// Every name, in the same order.
+    pub const NAMES: [&str; 2] = ["brute_force", "bvh2"];
+
+    /// The kind of this name.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|(_, n)| *n == name).map(|(kind, _)| kind)
+    }
+
+    /// The name of this kind.
+    pub fn name(self) -> &'static str {
+        match self {
+            AccelKind::BruteForce => "brute_force",
+            AccelKind::Bvh2 => "bvh2",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_round_trip() {
+        for ((kind, name), listed) in AccelKind::ALL.into_iter().zip(AccelKind::NAMES) {
+            assert_eq!(AccelKind::parse(name), Some(kind));
+            assert_eq!((kind.name(), listed), (name, name));
+        }
+        assert_eq!(AccelKind::parse("kd_tree"), None);
+    }
+}

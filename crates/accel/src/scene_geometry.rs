@@ -1,0 +1,98 @@
+//! What there is to hit: shapes, geometries, aggregates of them, and instances of aggregates.
+
+use kirkas_geometry::{AnimatedTransform, Bounds3, Ray, Vec3};
+use std::sync::Arc;
+
+/// A ball's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its center.
+    pub center: Vec3,
+    /// Its radius, 0 or more.
+    pub radius: f32,
+}
+
+/// Primitives of one type.
+#[derive(Clone)]
+pub enum Shape {
+    /// Triangles over shared vertices. Two-sided; those without area are never hit.
+    Triangles {
+        /// The vertices.
+        positions: Arc<Vec<Vec3>>,
+        /// Three vertices per triangle.
+        indices: Arc<Vec<[u32; 3]>>,
+    },
+    /// Spheres. Hit from outside and from inside.
+    Spheres(Arc<Vec<Sphere>>),
+    /// Anything that can bound itself and be asked for its crossings.
+    User(Arc<dyn UserShape>),
+}
+
+impl Shape {
+    /// Number of primitives.
+    pub fn len(&self) -> usize {
+        match self {
+            Shape::Triangles { indices, .. } => indices.len(),
+            Shape::Spheres(spheres) => spheres.len(),
+            Shape::User(user) => user.len(),
+        }
+    }
+
+    /// True without primitives.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Shapes that this crate does not know: analytic ones, with f64 inside. All methods are pure functions.
+pub trait UserShape: Send + Sync {
+    /// Number of primitives.
+    fn len(&self) -> usize;
+
+    /// True without primitives.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// A box that holds the primitive. It may be unbounded (an infinite plane); such primitives are tested by every ray.
+    fn bounds(&self, primitive: u32) -> Bounds3;
+
+    /// Calls `visit(t, u, v)` for the crossings with `ray.t_min < t < ray.t_max`, in increasing `t`, until it returns true
+    /// ("taken"). The ray is in the space of the shape, its direction of any length.
+    fn intersect(&self, primitive: u32, ray: &Ray, visit: &mut dyn FnMut(f32, f32, f32) -> bool);
+}
+
+/// A shape with its visibility.
+#[derive(Clone)]
+pub struct Geometry {
+    /// The primitives.
+    pub shape: Shape,
+    /// True when every hit counts; false when a `HitFilter` is to be asked.
+    pub opaque: bool,
+    /// Seen by rays with `ray.mask & mask != 0`.
+    pub mask: u32,
+}
+
+/// An aggregate, placed into the world.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Index into `SceneGeometry::aggregates`.
+    pub aggregate: usize,
+    /// Where it stands, as a function of time.
+    pub world_from_object: AnimatedTransform,
+    /// Seen by rays with `ray.mask & mask != 0`, where the geometry's own mask agrees.
+    pub mask: u32,
+}
+
+/// All that rays may meet.
+#[derive(Clone, Default)]
+pub struct SceneGeometry {
+    /// Geometry that stands in the world itself.
+    pub world: Vec<Geometry>,
+    /// Geometry to be instanced; each aggregate gets one tree, however often it is placed.
+    pub aggregates: Vec<Vec<Geometry>>,
+    /// The places of the aggregates.
+    pub instances: Vec<Instance>,
+    /// The times that rays may carry, in seconds; other times are clamped into it.
+    pub shutter: (f64, f64),
+}
