@@ -1,0 +1,52 @@
+//! `decode` tells formats apart by their bytes, and linearises exactly.
+
+use crate::samples::{smooth_rgb, valid_files};
+use kirkas_images::*;
+
+#[test]
+fn formats_are_told_apart_by_their_bytes() {
+    for (ending, file) in valid_files() {
+        // A wrong hint does no harm where the bytes speak.
+        let hint = if ending == "tga" { "TGA" } else { "txt" };
+        let image = decode(&file, Some(hint)).unwrap_or_else(|error| panic!("{ending}: {error}"));
+        assert!(matches!((image.width, image.height), (40, 33) | (7, 37)), "{ending}");
+    }
+    assert_eq!(decode(b"hello", None), Err(ImageError::UnknownFormat));
+    assert_eq!(decode(b"", Some("png")), Err(ImageError::UnknownFormat));
+    assert!(matches!(decode(b"hello", Some("tga")), Err(ImageError::Damaged { format: "TGA", .. })));
+}
+
+#[test]
+fn lossless_formats_give_the_codes_that_went_in() {
+    let codes = to_srgb8(&smooth_rgb(40, 33), 0.0, ToneCurve::Linear);
+    for (ending, file) in valid_files() {
+        let image = decode(&file, Some(ending)).unwrap();
+        let Pixels::Srgb8(pixels) = &image.pixels else { continue };
+        let got: Vec<u8> = pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+        if ending == "jpg" {
+            let near = got.iter().zip(&codes).filter(|(a, b)| a.abs_diff(**b) < 40).count();
+            assert!(near * 10 > codes.len() * 9, "the JPEG is another picture: {near} of {}", codes.len());
+        } else {
+            assert_eq!(got, codes, "{ending}");
+            assert_eq!(to_srgb8(&image.rgb(), 0.0, ToneCurve::Linear), codes, "{ending}");
+        }
+    }
+}
+
+#[test]
+fn linear_and_raw_numbers() {
+    let image =
+        DecodedImage { width: 1, height: 1, pixels: Pixels::Srgb8(vec![[0, 128, 255, 128]]), texts: Texts::new() };
+    assert_eq!(image.raw(), [[0.0, 128.0 / 255.0, 1.0, 128.0 / 255.0]]);
+    assert_eq!(image.linear(), [[0.0, 0.215_860_5, 1.0, 128.0 / 255.0]]);
+}
+
+#[test]
+fn alpha_of_an_exr_is_kept() {
+    let mut image = Image::from_rgb(&smooth_rgb(2, 1), ChannelData::F32);
+    image.push("A", ChannelData::F16(vec![0.5, 1.0]));
+    let decoded = decode(&write_exr(&image, ExrCompression::Zip).unwrap(), None).unwrap();
+    let alpha: Vec<f32> = decoded.linear().iter().map(|pixel| pixel[3]).collect();
+    assert_eq!(alpha, [0.5, 1.0]);
+    assert_eq!(decoded.rgb(), smooth_rgb(2, 1));
+}
