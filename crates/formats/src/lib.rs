@@ -3,12 +3,17 @@
 //! Everything is read through [`kirkas_scene::files::FileAccess`]; nothing here knows how a picture is made. A reader
 //! takes any bytes: it answers with a description or with a [`Failure`] that says what is wrong and where.
 
-pub mod failure;
-
-pub mod toml;
+pub mod load;
 
 pub mod mit6837;
 pub mod obj;
 pub mod ply;
+pub mod toml;
 
+pub mod assets;
+pub mod failure;
+pub mod mesh_scene;
+
+pub use assets::{FormatAssets, MeshCache};
 pub use failure::Failure;
+pub use load::{load, load_cached};

@@ -119,6 +119,10 @@ impl Entity {
 pub struct Description {
     /// The texts it was read from.
     pub sources: Sources,
+    /// What the picture is called; empty if nobody said.
+    pub title: String,
+    /// A few words about it; empty if nobody said.
+    pub description: String,
     entities: [Vec<Entity>; Kind::ALL.len()],
 }
 
@@ -208,10 +212,13 @@ impl Description {
             .help(format!("write `{path}.parameter=value`")));
         };
         if *first == "type" && deeper.is_empty() {
-            if let Value::Text(t) = node.value {
-                entity.type_name = Name { text: t, span: node.span };
-                return Ok(());
-            }
+            let Value::Text(text) = node.value else {
+                return Err(Diagnostic::error("wrong-type", format!("a type is a text, not {}", node.value.article()))
+                    .at(node.span, "expected a text")
+                    .help(format!("write `{path}=NAME`")));
+            };
+            entity.type_name = Name { text, span: node.span };
+            return Ok(());
         }
         if deeper.is_empty() {
             entity.params.set(Name { text: (*first).into(), span: path_span }, node);
