@@ -74,7 +74,8 @@ const LONGEST_TEXT: usize = 512 << 20;
 pub fn read_text(files: &FileAccess, folder: &str, path: &str) -> Result<TextFile, Diagnostic> {
     let (path, bytes) = files.read(folder, path).map_err(|e| file_problem(&e))?;
     if bytes.len() > LONGEST_TEXT {
-        let message = format!("`{path}` is a text of {} MiB, but {} are allowed", bytes.len() >> 20, LONGEST_TEXT >> 20);
+        let message =
+            format!("`{path}` is a text of {} MiB, but {} are allowed", bytes.len() >> 20, LONGEST_TEXT >> 20);
         return Err(Diagnostic::error("file-too-large", message).help("keep long arrays in binary PLY files beside it"));
     }
     let text = utf8(&path, &bytes)?.to_string();
@@ -90,7 +91,8 @@ pub fn utf8<'a>(path: &str, bytes: &'a [u8]) -> Result<&'a str, Diagnostic> {
         let utf16 = bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]);
         let help = if utf16 { "it looks like UTF-16; save it as UTF-8" } else { "save it as UTF-8" };
         let byte = bytes.get(e.valid_up_to()).copied().unwrap_or_default();
-        Diagnostic::error("not-text", format!("`{path}` is not UTF-8 text: byte 0x{byte:02x} in line {line}")).help(help)
+        Diagnostic::error("not-text", format!("`{path}` is not UTF-8 text: byte 0x{byte:02x} in line {line}"))
+            .help(help)
     })
 }
 

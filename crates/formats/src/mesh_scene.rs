@@ -33,7 +33,8 @@ pub fn mesh_scene(files: &FileAccess, path: &str, meshes: &MeshCache) -> Result<
 
 fn describe(scene: &mut Description, path: &str, source: SourceId, mesh: &MeshData) -> Result<(), Diagnostic> {
     // Measure.
-    let bounds = Bounds3::around(mesh.triangles.iter().flatten().filter_map(|&i| mesh.positions.get(i as usize)).copied());
+    let bounds =
+        Bounds3::around(mesh.triangles.iter().flatten().filter_map(|&i| mesh.positions.get(i as usize)).copied());
     let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
     let (center, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
     if mesh.triangles.is_empty() || !(radius > 0.0) || !radius.is_finite() {
@@ -61,9 +62,13 @@ fn describe(scene: &mut Description, path: &str, source: SourceId, mesh: &MeshDa
         .with("normal", (-to_lamp).to_array())
         .with("radius", lamp_radius * radius)
         .with("material", "lamp");
-    let fill = Map::default().with("direction", [-1.0, -0.45, -0.35]).with("intensity", 0.16).with("color", [0.8, 0.9, 1.0]);
+    let fill =
+        Map::default().with("direction", [-1.0, -0.45, -0.35]).with("intensity", 0.16).with("color", [0.8, 0.9, 1.0]);
     scene.add(Kind::Light, Entity::new("fill", "directional", fill))?;
-    scene.add(Kind::Light, Entity::new("ambient", "ambient", Map::default().with("color", [0.85, 0.92, 1.0]).with("intensity", 0.14)))?;
+    scene.add(
+        Kind::Light,
+        Entity::new("ambient", "ambient", Map::default().with("color", [0.85, 0.92, 1.0]).with("intensity", 0.14)),
+    )?;
     scene.add(Kind::Background, Entity::new("", "gradient", Map::default().with("stops", background())))?;
 
     // Put the mesh on a floor that it does not quite touch.

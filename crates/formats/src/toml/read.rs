@@ -19,7 +19,14 @@ const MOST_PROBLEMS: usize = 50;
 
 /// Read the scene `path` and every file that it includes.
 pub fn read(files: &FileAccess, path: &str) -> Result<Description, Failure> {
-    let mut reader = Reader { files, into: Description::default(), problems: Vec::new(), chain: Vec::new(), done: BTreeSet::new(), names: BTreeMap::new() };
+    let mut reader = Reader {
+        files,
+        into: Description::default(),
+        problems: Vec::new(),
+        chain: Vec::new(),
+        done: BTreeSet::new(),
+        names: BTreeMap::new(),
+    };
     reader.file("", path, Span::NONE);
     let Reader { into, mut problems, .. } = reader;
     if problems.is_empty() {
@@ -52,8 +59,11 @@ impl Reader<'_> {
         let full = resolve(folder, path).map_err(|e| file_problem(&e))?;
         if let Some(start) = self.chain.iter().position(|p| *p == full) {
             let loop_ = self.chain[start..].iter().chain([&full]).map(|p| format!("`{p}`")).collect::<Vec<_>>();
-            return Err(Diagnostic::error("recursive-include", format!("`{full}` includes itself: {}", loop_.join(" -> ")))
-                .help("remove one of these includes"));
+            return Err(Diagnostic::error(
+                "recursive-include",
+                format!("`{full}` includes itself: {}", loop_.join(" -> ")),
+            )
+            .help("remove one of these includes"));
         }
         let deepest = self.files.limits().include_depth;
         if self.chain.len() > deepest {
@@ -125,9 +135,12 @@ impl Reader<'_> {
             }
             ("version", _) if node.value == Value::Int(VERSION) => {}
             ("version", _) => self.problems.push(
-                Diagnostic::error("unknown-version", format!("this Kirkas reads version {VERSION} of the scene format"))
-                    .at(node.span, "another version")
-                    .help(format!("write `version = {VERSION}`, or use the Kirkas that this scene was made for")),
+                Diagnostic::error(
+                    "unknown-version",
+                    format!("this Kirkas reads version {VERSION} of the scene format"),
+                )
+                .at(node.span, "another version")
+                .help(format!("write `version = {VERSION}`, or use the Kirkas that this scene was made for")),
             ),
             (_, Some(kind)) => match node.value {
                 Value::Map(map) if kind.is_single() => {
@@ -161,9 +174,12 @@ impl Reader<'_> {
             let Value::Map(params) = node.value else {
                 let section = kind.section();
                 self.problems.push(
-                    Diagnostic::error("missing-name", format!("`{}` stands in [{section}], but {section} have names", name.text))
-                        .at(name.span, "whose?")
-                        .help(format!("write [{section}.NAME] above it")),
+                    Diagnostic::error(
+                        "missing-name",
+                        format!("`{}` stands in [{section}], but {section} have names", name.text),
+                    )
+                    .at(name.span, "whose?")
+                    .help(format!("write [{section}.NAME] above it")),
                 );
                 continue;
             };
@@ -241,6 +257,7 @@ fn not_a_table(kind: Kind, name: &Name, value: &Value) -> Diagnostic {
         (true, false) => format!("{section} have names"),
         (false, _) => format!("`{section}` is a table, not {}", value.article()),
     };
-    Diagnostic::error("wrong-type", message).at(name.span, "here").help(format!("write {header}, with single brackets, and its values below"))
+    Diagnostic::error("wrong-type", message)
+        .at(name.span, "here")
+        .help(format!("write {header}, with single brackets, and its values below"))
 }
-

@@ -39,18 +39,49 @@ fn problems(source: SourceId, text: &str, errors: &[::toml::de::Error]) -> Vec<D
 
 /// A syntax error in the words of someone who wants to help.
 pub(super) fn problem(message: &str, span: Span) -> Diagnostic {
-    let (message, help) = match message {
+    let begins = |start: &str| message.starts_with(start);
+    let (said, help) = match message {
         "duplicate key" => ("this name is already taken", "a name stands once in its table: rename or remove one"),
-        "recursion limit" | "cannot recurse further; max recursion depth met" => {
+        "string values must be quoted, expected literal string" if span.start == span.end => {
+            ("a value is missing", "write `name = value`")
+        }
+        "string values must be quoted, expected literal string" => ("a text must stand in quotes", "write `\"...\"`"),
+        _ if message.contains("recursion") => {
             ("nested more than 80 levels deep", "bring these values nearer to the surface")
         }
-        m if m.starts_with("string values must be quoted") => ("a text must stand in quotes", "write `\"...\"`"),
-        m if m.contains("unclosed array") => (m, "close it with `]`"),
-        m if m.contains("unclosed inline table") => (m, "close it with `}`"),
-        m if m.contains("unclosed table") => (m, "close the header with `]`"),
-        m if m.contains("missing assignment") || m.contains("key with no value") => (m, "write `name = value`"),
-        m if m.contains("invalid basic string") || m.contains("invalid literal string") => (m, "close it with the quote it began with"),
-        m => (m, "see https://toml.io for how TOML is written"),
+        _ if begins("unquoted keys cannot be empty") => {
+            ("a name is missing", "write a name of letters, digits, `_` and `-`")
+        }
+        _ if begins("invalid unquoted key") => {
+            ("this name needs quotes", "only letters a-z, digits, `_` and `-` stand without")
+        }
+        _ if begins("invalid basic string") || begins("invalid literal string") => {
+            ("this text does not end", "close it with the quote that it began with")
+        }
+        _ if begins("unclosed array") => ("this list does not end", "close it with `]`"),
+        _ if begins("unclosed inline table") => ("this table does not end", "close it with `}`"),
+        _ if begins("unclosed table") || begins("unclosed array table") => {
+            ("this header does not end", "close it with `]`")
+        }
+        _ if begins("key with no value") => ("this name has no value", "write `name = value`"),
+        _ if begins("missing comma") => {
+            ("a comma or an end is missing", "put a comma between values, and close what was opened")
+        }
+        _ if begins("unexpected key or value") => ("one line says one thing", "begin a new line here"),
+        _ if begins("unexpected leading zero") => ("a number does not begin with 0", "leave the leading zeros out"),
+        _ if begins("missing escaped value") => {
+            ("a backslash begins a sign such as `\\n`", "write `\\\\` for the backslash itself")
+        }
+        _ if begins("invalid boolean") => {
+            ("neither `true` nor `false`", "write `true` or `false`, or put a text in quotes")
+        }
+        _ if begins("invalid mantissa") || begins("invalid fraction") => {
+            ("a digit is missing beside the point", "write `0.5` and `5.0`")
+        }
+        _ => (
+            message.strip_suffix(", expected nothing").unwrap_or(message),
+            "see https://toml.io for how TOML is written",
+        ),
     };
-    Diagnostic::error("syntax", message).at(span, "here").help(help)
+    Diagnostic::error("syntax", said).at(span, "here").help(help)
 }

@@ -41,7 +41,9 @@ impl Converter {
                 Ok(v) if v.is_finite() || !f.as_str().contains(|c: char| c.is_ascii_digit()) => Value::Float(v),
                 _ => self.refuse(span, "this number is too large", "numbers go up to about 1.8e308"),
             },
-            DeValue::Datetime(_) => self.refuse(span, "a date is not a value in a scene", "put it in quotes if it is a text"),
+            DeValue::Datetime(_) => {
+                self.refuse(span, "a date is not a value in a scene", "put it in quotes if it is a text")
+            }
             DeValue::Array(items) => Value::List(items.iter().map(|v| self.node(v.get_ref(), v.span())).collect()),
             DeValue::Table(table) => Value::Map(self.table(table)),
         };

@@ -99,17 +99,20 @@ fn text(t: &str) -> String {
     format!("\"{}\"", escaped(t, false))
 }
 
+/// Several lines as several lines.
 fn long_text(t: &str) -> String {
     if t.contains('\n') { format!("\"\"\"\n{}\"\"\"", escaped(t, true)) } else { text(t) }
 }
 
-fn escaped(t: &str, keep_lines: bool) -> String {
+fn escaped(t: &str, lines: bool) -> String {
     let mut out = String::with_capacity(t.len());
-    for c in t.chars() {
+    let mut chars = t.chars().peekable();
+    while let Some(c) = chars.next() {
         match c {
+            '"' if lines && chars.peek().is_some_and(|&next| next != '"') => out.push('"'),
             '"' => out += "\\\"",
             '\\' => out += "\\\\",
-            '\n' if keep_lines => out.push('\n'),
+            '\n' if lines => out.push('\n'),
             '\n' => out += "\\n",
             '\t' => out += "\\t",
             '\r' => out += "\\r",
