@@ -1,1 +1,17 @@
-//! kirkas-optics
+//! How light meets matter: lanes of light, Fresnel's equations, microfacets, and the models of scattering (BSDFs) that
+//! materials are made of.
+//!
+//! Nothing here knows of rays, textures or files. The renderer evaluates a material's textures into values and gets a
+//! [`Bsdf`] back; all its directions are in a local frame whose +z is the shading normal.
+
+pub mod bsdf;
+pub mod fresnel;
+pub mod lanes;
+pub mod light;
+pub mod medium;
+pub mod microfacet;
+
+pub use bsdf::{Branches, Bsdf, BsdfModel, BsdfSample, Interface, Lobe, LobeSet, Mode, SPECS};
+pub use lanes::Lanes;
+pub use light::Light;
+pub use medium::Medium;

@@ -1,0 +1,85 @@
+//! # emitter
+//!
+//! The surface of a lamp: it shines and reflects nothing. The renderer makes an area light of every object that wears it.
+//!
+//! ## Parameters
+//!
+//! | name | type | unit | default | meaning |
+//! |---|---|---|---|---|
+//! | `radiance` | colour or texture | | 1 | colour of the light, times `intensity` |
+//! | `intensity` | number | `unit` | 1 | how much |
+//! | `unit` | `plain`, `W/m2/sr`, `nit`, `W`, `lm` | | `plain` | what `intensity` counts: radiance (`plain`, `W/m2/sr`), luminance, or what the whole lamp gives off |
+//! | `two_sided` | true or false | | false | shines from its back as well |
+//! | `samples` | whole number | | 4 | shadow rays to it per hit, stratified |
+//! | `group` | text | | the object's name | light group its light is filed under |
+//!
+//! ## Example
+//!
+//! ```toml
+//! [materials.lamp]
+//! type = "emitter"
+//! radiance = [1.0, 0.9, 0.7]
+//! intensity = 8
+//! ```
+//!
+//! ## Limits
+//!
+//! Equal radiance in every direction (a Lambertian lamp); no beams.
+//!
+//! ## References
+//!
+//! Units: IES, "Nomenclature and Definitions for Illuminating Engineering", LS-1-20.
+
+use super::{BsdfSample, Interface, LobeSet, Mode, Prepare, Scatter};
+use crate::Light;
+use kirkas_geometry::Vec3;
+use kirkas_scene::spec::NOT_NEGATIVE;
+use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
+
+/// The table.
+pub const SPEC: TypeSpec = TypeSpec {
+    kind: Kind::Material,
+    name: "emitter",
+    doc: "The surface of a lamp: it shines and reflects nothing.",
+    params: &[
+        ParamSpec::reflectance("radiance", [1.0; 3], "colour of the light, times `intensity`").range(NOT_NEGATIVE),
+        ParamSpec::number("intensity", 1.0, "how much light, in `unit`").range(NOT_NEGATIVE),
+        ParamSpec::choice("unit", &["plain", "W/m2/sr", "nit", "W", "lm"], "what `intensity` counts"),
+        ParamSpec::bool("two_sided", false, "shines from its back as well"),
+        ParamSpec::integer("samples", 4, (1.0, 65536.0), "shadow rays to it per hit, stratified"),
+        ParamSpec::new("group", ParamType::Text, Fallback::Absent, "light group; absent = the object's name"),
+    ],
+};
+
+/// Nothing: the renderer reads the table itself.
+#[derive(Clone, Debug)]
+pub struct Prepared;
+
+/// A black surface.
+#[derive(Clone, Debug)]
+pub struct Emitter;
+
+impl Prepare for Prepared {
+    type At = Emitter;
+    fn prepare(_: &Params) -> Self {
+        Prepared
+    }
+    fn at(&self, _: &[Light], _: Interface) -> Emitter {
+        Emitter
+    }
+}
+
+impl Scatter for Emitter {
+    fn lobes(&self) -> LobeSet {
+        LobeSet::NONE
+    }
+    fn eval(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> Light {
+        Light::BLACK
+    }
+    fn pdf(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> f32 {
+        0.0
+    }
+    fn sample(&self, _: Vec3, _: f32, _: (f32, f32), _: LobeSet, _: Mode) -> Option<BsdfSample> {
+        None
+    }
+}

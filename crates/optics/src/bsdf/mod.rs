@@ -1,0 +1,290 @@
+//! The models of scattering, one file each, and the contract they share.
+//!
+//! **Frame.** +z is the shading normal. `wo` (to where the light goes, or where importance comes from) and `wi` are unit
+//! vectors that point away from the surface; the sign of z tells the side. Opaque models look the same from both sides.
+//!
+//! **Measures.** `f` is per solid angle and projected solid angle as usual (1/sr), *without* the cosine. `pdf` is per
+//! solid angle of `wi`. A delta lobe has no `f` and no pdf: `eval` and `pdf` leave it out, `sample` gives its weight (the
+//! cosine already divided out) and its discrete probability. Both cases: [`BsdfSample::weight`].
+//!
+//! **Lobes.** Every call takes the set of lobes it is about; `pdf` and `sample` then speak of the distribution restricted
+//! to that set, so `sample` with one lobe draws that lobe alone.
+//!
+//! **Modes.** `Importance` is the adjoint: `f*(wo, wi) = f(wi, wo)` (Veach 1997, section 3.7.6). Radiance is scaled by
+//! `(eta_o / eta_i)^2` where it crosses a boundary, importance is not (Veach 1997, section 5.2). Between entering and leaving
+//! a body the factors cancel; a camera *inside* a medium of index n sees n^2 the radiance, as is right, and a renderer that
+//! wants its exposure independent of that divides by n^2.
+//!
+//! To add a model: write `NAME.rs` beside this file (start from `lambert.rs`), and add `pub mod NAME;` and its row in
+//! `models!` below.
+
+use crate::{Light, Medium};
+use kirkas_geometry::Vec3;
+use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
+
+pub mod blinn_phong;
+pub mod dielectric;
+pub mod emitter;
+pub mod lambert;
+pub mod mirror;
+pub mod phong;
+pub mod rough_dielectric;
+pub mod rough_mirror;
+
+mod boundary;
+mod lobes;
+mod phong_body;
+
+pub use boundary::Interface;
+pub use lobes::{Lobe, LobeSet};
+
+models! {
+    lambert Lambert,
+    phong Phong,
+    blinn_phong BlinnPhong,
+    mirror Mirror,
+    dielectric Dielectric,
+    rough_mirror RoughMirror,
+    rough_dielectric RoughDielectric,
+    emitter Emitter,
+}
+
+/// What travels along `wo`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Paths from the camera: light arrives along `wi` and leaves along `wo`.
+    Radiance,
+    /// Paths from a light: light arrives along `wo` and leaves along `wi`.
+    Importance,
+}
+
+/// One sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// Where it goes, unit, away from the surface.
+    pub wi: Vec3,
+    /// The value without cosine, of all lobes asked for; for a delta lobe its weight, `L_o = f L_i`.
+    pub f: Light,
+    /// Density per solid angle; for a delta lobe the probability with which it was chosen. Above 0, finite.
+    pub pdf: f32,
+    /// The lobe it was drawn from.
+    pub lobe: Lobe,
+    /// Refractive index on `wi`'s side over the one on `wo`'s; 1 for reflection.
+    pub eta: f32,
+}
+
+impl BsdfSample {
+    /// What the light along `wi` is multiplied by: `f |cos| / pdf`, for a delta lobe `f / pdf`.
+    pub fn weight(&self) -> Light {
+        let cos = if self.lobe.is_delta() { 1.0 } else { self.wi.z.abs() };
+        self.f * (cos / self.pdf)
+    }
+}
+
+/// Up to two delta lobes, the reflected one first. Their `f` is whole: `pdf` is 1, nothing was drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Branches {
+    items: [Option<BsdfSample>; 2],
+}
+
+impl Branches {
+    fn push(&mut self, s: BsdfSample) {
+        let slot = usize::from(self.items[0].is_some());
+        self.items[slot] = Some(s);
+    }
+
+    /// In order.
+    pub fn iter(&self) -> impl Iterator<Item = &BsdfSample> {
+        self.items.iter().flatten()
+    }
+}
+
+impl IntoIterator for Branches {
+    type Item = BsdfSample;
+    type IntoIter = core::iter::Flatten<core::array::IntoIter<Option<BsdfSample>, 2>>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.items.into_iter().flatten()
+    }
+}
+
+/// A model with its fixed parameters read: once per material.
+trait Prepare: Sized {
+    /// What it is at a point.
+    type At: Scatter;
+    /// From validated parameters.
+    fn prepare(params: &Params) -> Self;
+    /// With the values of its texture rows, in table order.
+    fn at(&self, slots: &[Light], interface: Interface) -> Self::At;
+    /// The filling, if the surface bounds one.
+    fn medium(&self) -> Option<Medium> {
+        None
+    }
+}
+
+/// What every model answers at a point. The contract stands at the head of this file.
+trait Scatter {
+    fn lobes(&self) -> LobeSet;
+    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light;
+    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> f32;
+    fn sample(&self, wo: Vec3, u_lobe: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample>;
+    fn delta_branches(&self, _wo: Vec3, _mode: Mode) -> Branches {
+        Branches::default()
+    }
+    fn traced_lobes(&self) -> LobeSet {
+        LobeSet::NONE
+    }
+    fn ambient(&self) -> Light {
+        Light::BLACK
+    }
+}
+
+/// The rows that the renderer evaluates at every hit, in the order in which [`BsdfModel::at`] takes their values.
+pub fn texture_rows(spec: &'static TypeSpec) -> impl Iterator<Item = &'static ParamSpec> {
+    spec.params.iter().filter(|row| is_texture(row.ty))
+}
+
+const fn is_texture(ty: ParamType) -> bool {
+    matches!(ty, ParamType::ColorTexture | ParamType::NumberTexture)
+}
+
+/// Place of the row `name` among the texture rows; an unknown name does not compile.
+const fn slot(params: &[ParamSpec], name: &str) -> usize {
+    let (mut i, mut n) = (0, 0);
+    while i < params.len() {
+        if is_texture(params[i].ty) {
+            if same(params[i].name.as_bytes(), name.as_bytes()) {
+                return n;
+            }
+            n += 1;
+        }
+        i += 1;
+    }
+    panic!("no such texture row")
+}
+
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    a.len() == b.len() && i == a.len()
+}
+
+macro_rules! models {
+    ($($module:ident $Name:ident),* $(,)?) => {
+        /// The tables of all models, in listed order.
+        pub const SPECS: &[TypeSpec] = &[$($module::SPEC),*];
+
+        /// A model with its fixed parameters read: once per material.
+        #[derive(Clone, Debug)]
+        #[allow(missing_docs)]
+        pub enum BsdfModel {
+            $($Name($module::Prepared)),*
+        }
+
+        impl BsdfModel {
+            /// From validated parameters; `None` if the type is not a material's.
+            pub fn prepare(params: &Params) -> Option<Self> {
+                $(if params.spec().name == $module::SPEC.name {
+                    return Some(BsdfModel::$Name(Prepare::prepare(params)));
+                })*
+                None
+            }
+
+            /// Its table.
+            pub fn spec(&self) -> &'static TypeSpec {
+                match self {
+                    $(BsdfModel::$Name(_) => &$module::SPEC),*
+                }
+            }
+
+            /// The model at a point: `slots` are the values of its [`texture_rows`] (by
+            /// [`Lanes::parameter`](crate::Lanes::parameter)), black for one that is absent; `interface` the refractive
+            /// indices on both sides (the same twice where the surface bounds no medium).
+            #[inline]
+            pub fn at(&self, slots: &[Light], interface: Interface) -> Bsdf {
+                match self {
+                    $(BsdfModel::$Name(m) => Bsdf::$Name(m.at(slots, interface))),*
+                }
+            }
+
+            /// What fills the body, if its surface is a boundary between media.
+            pub fn medium(&self) -> Option<Medium> {
+                match self {
+                    $(BsdfModel::$Name(m) => m.medium()),*
+                }
+            }
+        }
+
+        /// A model at a point, ready to be asked. See the head of [`bsdf`](crate::bsdf) for frame and measures.
+        #[derive(Clone, Debug)]
+        #[allow(missing_docs)]
+        pub enum Bsdf {
+            $($Name($module::$Name)),*
+        }
+
+        impl Bsdf {
+            /// The lobes it has here.
+            pub fn lobes(&self) -> LobeSet {
+                match self {
+                    $(Bsdf::$Name(b) => b.lobes()),*
+                }
+            }
+
+            /// The value (1/sr, no cosine) of the lobes asked for; delta lobes count nothing.
+            #[inline]
+            pub fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
+                match self {
+                    $(Bsdf::$Name(b) => b.eval(wo, wi, lobes, mode)),*
+                }
+            }
+
+            /// The density per solid angle with which [`Bsdf::sample`] with the same lobes gives `wi`.
+            #[inline]
+            pub fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> f32 {
+                match self {
+                    $(Bsdf::$Name(b) => b.pdf(wo, wi, lobes, mode)),*
+                }
+            }
+
+            /// A direction drawn from the lobes asked for; `u_lobe` picks the lobe, `u` the direction, all in `[0, 1)`.
+            /// `None`: this sample carries nothing.
+            #[inline]
+            pub fn sample(
+                &self,
+                wo: Vec3,
+                u_lobe: f32,
+                u: (f32, f32),
+                lobes: LobeSet,
+                mode: Mode,
+            ) -> Option<BsdfSample> {
+                match self {
+                    $(Bsdf::$Name(b) => b.sample(wo, u_lobe, u, lobes, mode)),*
+                }
+            }
+
+            /// All its delta lobes with their whole weights, for a Whitted tree.
+            pub fn delta_branches(&self, wo: Vec3, mode: Mode) -> Branches {
+                match self {
+                    $(Bsdf::$Name(b) => b.delta_branches(wo, mode)),*
+                }
+            }
+
+            /// The glossy lobes that stand for blurred mirrors and panes: a Whitted tree follows each with rays of its
+            /// own, from [`Bsdf::sample`] with that one lobe. (A Phong highlight is not one of them.)
+            pub fn traced_lobes(&self) -> LobeSet {
+                match self {
+                    $(Bsdf::$Name(b) => b.traced_lobes()),*
+                }
+            }
+
+            /// What ambient light, the classics' stand-in for all indirect light, is multiplied by.
+            pub fn ambient(&self) -> Light {
+                match self {
+                    $(Bsdf::$Name(b) => b.ambient()),*
+                }
+            }
+        }
+    };
+}
+use models;

@@ -1,0 +1,26 @@
+//! What fills a closed surface: refractive index, priority among overlapping fillings, absorption.
+
+use crate::Light;
+use kirkas_geometry::elementary::exp_f32;
+
+/// A clear, evenly absorbing filling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Refractive index.
+    pub ior: f32,
+    /// Where fillings overlap, the highest priority wins (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
+    /// Traced Images").
+    pub priority: i32,
+    /// Absorption coefficient, linear Rec.709, per scene unit; make it lanes with `Lanes::unbounded`.
+    pub absorption: [f32; 3],
+}
+
+impl Medium {
+    /// Vacuum, and near enough air.
+    pub const VACUUM: Self = Medium { ior: 1.0, priority: i32::MIN, absorption: [0.0; 3] };
+}
+
+/// What is left of light after `distance`: `exp(-absorption distance)` (Beer & Lambert).
+pub fn transmittance(absorption: Light, distance: f32) -> Light {
+    absorption.map(|a| if a > 0.0 { exp_f32(-a * distance) } else { 1.0 })
+}
