@@ -1,0 +1,236 @@
+//! Textures: colours that depend on where a surface is hit. Each is a pure function of a [`TexturePoint`].
+//!
+//! A texture may be made of others; names become numbers when the scene is compiled, and [`Textures`] holds them all in
+//! one flat table. A looked-up value has four lanes: linear Rec.709 and, last, the number that the texture means where it
+//! is used as a mask (the alpha channel of an image that has one, else the mean of the colour).
+
+mod checker;
+mod image;
+mod marble;
+mod noise;
+mod perlin;
+mod references;
+mod wood;
+
+pub use references::{ColorSource, NumberSource, TextureNames};
+
+use checker::Checker;
+use image::{Image, ImageFiles};
+use kirkas_geometry::{DAffine3, DVec3};
+use kirkas_scene::spec::ANY;
+use kirkas_scene::transforms::read_transform;
+use kirkas_scene::{
+    Assets, Catalog, Description, Diagnostic, Entity, Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec,
+};
+use marble::Marble;
+use noise::Noise;
+use wood::Wood;
+
+/// Where a texture is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturePoint {
+    /// Texture coordinates; v = 0 is the bottom row of an image.
+    pub uv: [f32; 2],
+    /// In object space, for solid textures.
+    pub object_position: DVec3,
+    /// In world space, for solid textures with `space = "world"`.
+    pub world_position: DVec3,
+}
+
+/// Every type of texture.
+pub const TEXTURES: &[&TypeSpec] = &[&checker::SPEC, &image::SPEC, &noise::SPEC, &marble::SPEC, &wood::SPEC];
+
+/// Rows that every texture takes.
+pub const COMMON: &[ParamSpec] = &[
+    ParamSpec::new(
+        "transform",
+        ParamType::Transform,
+        Fallback::Absent,
+        "steps that place the pattern in its space; in the plane of u and v for flat textures",
+    )
+    .range(ANY),
+    ParamSpec::choice("space", &["object", "world"], "what a solid texture is fixed to: the object or the world"),
+];
+
+/// One compiled texture, before it is placed.
+#[derive(Clone, Debug)]
+enum Texture {
+    Checker(Checker),
+    Image(Image),
+    Noise(Noise),
+    Marble(Marble),
+    Wood(Wood),
+}
+
+/// All textures of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Textures {
+    placed: Vec<Placed>,
+    names: TextureNames,
+    files: ImageFiles,
+}
+
+#[derive(Clone, Debug)]
+struct Placed {
+    texture: Texture,
+    /// `None` for the identity.
+    texture_from_space: Option<DAffine3>,
+    is_in_world: bool,
+}
+
+/// A [`TexturePoint`] as the pattern sees it.
+#[derive(Clone, Copy, Debug)]
+struct PatternPoint<'a> {
+    uv: [f64; 2],
+    position: DVec3,
+    /// For the textures that this one is made of.
+    original: &'a TexturePoint,
+}
+
+/// What a texture is compiled from.
+struct TextureInput<'a> {
+    params: Params<'a>,
+    names: &'a TextureNames,
+    assets: &'a dyn Assets,
+    /// What paths are relative to; `None`: the file in which they are written.
+    folder: Option<&'a str>,
+}
+
+impl Textures {
+    /// All textures of a validated description, or everything that is wrong with them.
+    pub fn compile(
+        description: &Description,
+        catalog: &Catalog,
+        assets: &dyn Assets,
+    ) -> Result<Textures, Vec<Diagnostic>> {
+        let mut textures = Textures::default();
+        textures.names = textures.extend(description.all(Kind::Texture), None, catalog, assets)?;
+        Ok(textures)
+    }
+
+    /// The numbers of the description's textures.
+    pub fn names(&self) -> &TextureNames {
+        &self.names
+    }
+
+    /// Add the textures that came with a mesh, whose paths are relative to `folder`. They see only each other; the answer
+    /// gives their numbers. On an error nothing is added.
+    pub fn add(
+        &mut self,
+        entities: &[Entity],
+        folder: &str,
+        catalog: &Catalog,
+        assets: &dyn Assets,
+    ) -> Result<TextureNames, Vec<Diagnostic>> {
+        self.extend(entities, Some(folder), catalog, assets)
+    }
+
+    /// The linear Rec.709 colour at a point.
+    pub fn color(&self, source: ColorSource, point: &TexturePoint) -> [f32; 3] {
+        let [r, g, b, _] = self.lookup(source, point);
+        [r, g, b]
+    }
+
+    /// The number at a point: of a texture, the mean of its red, green and blue.
+    pub fn number(&self, source: NumberSource, point: &TexturePoint) -> f32 {
+        match source {
+            NumberSource::Constant(value) => value,
+            NumberSource::Texture(_) => mean(self.color(source.into(), point)),
+        }
+    }
+
+    /// The opacity at a point: the alpha channel of an image that has one, else as [`Textures::number`].
+    pub fn alpha(&self, source: NumberSource, point: &TexturePoint) -> f32 {
+        match source {
+            NumberSource::Constant(value) => value,
+            NumberSource::Texture(_) => self.lookup(source.into(), point)[3],
+        }
+    }
+
+    fn lookup(&self, source: ColorSource, point: &TexturePoint) -> [f32; 4] {
+        let number = match source {
+            ColorSource::Constant(c) => return [c[0], c[1], c[2], mean(c)],
+            ColorSource::Texture(number) => number,
+        };
+        // Numbers come from `TextureNames` of this table; any other is seen as black.
+        let Some(placed) = self.placed.get(number as usize) else { return [0.0; 4] };
+        let at = placed.pattern_point(point);
+        match &placed.texture {
+            Texture::Checker(t) => t.eval(self, &at),
+            Texture::Image(t) => t.eval(&at),
+            Texture::Noise(t) => t.eval(self, &at),
+            Texture::Marble(t) => t.eval(self, &at),
+            Texture::Wood(t) => t.eval(self, &at),
+        }
+    }
+
+    /// `a` where `weight` is 0, `b` where it is 1.
+    fn mix(&self, [a, b]: [ColorSource; 2], weight: f64, point: &TexturePoint) -> [f32; 4] {
+        let (a, b, w) = (self.lookup(a, point), self.lookup(b, point), weight as f32);
+        std::array::from_fn(|i| a[i] * (1.0 - w) + b[i] * w)
+    }
+
+    fn extend(
+        &mut self,
+        entities: &[Entity],
+        folder: Option<&str>,
+        catalog: &Catalog,
+        assets: &dyn Assets,
+    ) -> Result<TextureNames, Vec<Diagnostic>> {
+        let names = TextureNames::number(entities, self.placed.len());
+        let mut found = references::check(entities, &names, catalog);
+        let mut placed = Vec::with_capacity(entities.len());
+        for entity in entities {
+            let Some(params) = Params::new(entity, Kind::Texture, catalog) else { continue };
+            let input = TextureInput { params, names: &names, assets, folder };
+            match Placed::compile(&input, &mut self.files) {
+                Ok(texture) => placed.push(texture),
+                Err(diagnostic) => found.push(diagnostic),
+            }
+        }
+        if !found.is_empty() {
+            return Err(found);
+        }
+        self.placed.append(&mut placed);
+        Ok(names)
+    }
+}
+
+impl Placed {
+    fn compile(input: &TextureInput, files: &mut ImageFiles) -> Result<Self, Diagnostic> {
+        let texture = match input.params.spec().name {
+            "image" => Texture::Image(Image::compile(input, files)?),
+            "noise" => Texture::Noise(Noise::compile(input)),
+            "marble" => Texture::Marble(Marble::compile(input)),
+            "wood" => Texture::Wood(Wood::compile(input)),
+            _ => Texture::Checker(Checker::compile(input)),
+        };
+        let transform = input.params.entity.params.get("transform").map(read_transform).transpose()?;
+        let texture_from_space = transform.filter(|m| *m != DAffine3::IDENTITY).map(|m| m.inverse());
+        let is_in_world = input.params.text("space") == Some("world");
+        Ok(Placed { texture, texture_from_space, is_in_world })
+    }
+
+    fn pattern_point<'a>(&self, point: &'a TexturePoint) -> PatternPoint<'a> {
+        let position = if self.is_in_world { point.world_position } else { point.object_position };
+        let uv = point.uv.map(f64::from);
+        match &self.texture_from_space {
+            None => PatternPoint { uv, position, original: point },
+            Some(m) => {
+                let flat = m.transform_point3(DVec3::new(uv[0], uv[1], 0.0));
+                PatternPoint { uv: [flat.x, flat.y], position: m.transform_point3(position), original: point }
+            }
+        }
+    }
+}
+
+impl TextureInput<'_> {
+    /// The two things that most textures mix.
+    fn a_and_b(&self) -> [ColorSource; 2] {
+        ["a", "b"].map(|name| self.names.color(&self.params, name))
+    }
+}
+
+fn mean([r, g, b]: [f32; 3]) -> f32 {
+    (r + g + b) / 3.0
+}
