@@ -1,0 +1,301 @@
+//! Builds the tree: at each node the split of least expected cost among 15 planes per axis, by the surface-area heuristic
+//! (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
+//!
+//! One array of boxes is partitioned in place. Subtrees may be built at once: which, and with what outcome, depends on
+//! their size only.
+
+use super::MAX_DEPTH;
+use super::node::{Child, MAX_LEAF, Node};
+use crate::Executor;
+use kirkas_geometry::{Bounds3, Vec3};
+
+/// Cost of visiting a node; testing a primitive costs 1.
+pub(crate) const NODE_COST: f32 = 1.0;
+const BINS: usize = 16;
+/// Subtrees larger than this are handed to the executor in two halves.
+const FORK_ABOVE: usize = 1 << 15;
+
+/// A box in the making. The fourth lane carries the ids of a [`Reference`] and nothing otherwise.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(16))]
+pub(crate) struct Lanes([f32; 4]);
+
+impl Lanes {
+    #[inline(always)]
+    fn min(self, o: Lanes) -> Lanes {
+        Lanes(core::array::from_fn(|i| if self.0[i] < o.0[i] { self.0[i] } else { o.0[i] }))
+    }
+    #[inline(always)]
+    fn max(self, o: Lanes) -> Lanes {
+        Lanes(core::array::from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Box4 {
+    lo: Lanes,
+    hi: Lanes,
+}
+
+impl Box4 {
+    const EMPTY: Box4 = Box4 { lo: Lanes([f32::INFINITY; 4]), hi: Lanes([f32::NEG_INFINITY; 4]) };
+
+    #[inline(always)]
+    fn union(self, o: Box4) -> Box4 {
+        Box4 { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
+    }
+
+    /// Half the surface area; sizes are capped so that the product stays finite.
+    #[inline(always)]
+    fn half_area(&self) -> f32 {
+        let [x, y, z] = [0, 1, 2].map(|k| (self.hi.0[k] - self.lo.0[k]).min(1e18));
+        x * y + (y + x) * z
+    }
+
+    fn to_bounds(self) -> Bounds3 {
+        let v = |l: Lanes| Vec3::new(l.0[0], l.0[1], l.0[2]);
+        Bounds3 { min: v(self.lo), max: v(self.hi) }
+    }
+}
+
+/// A primitive's box and ids.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reference(Box4);
+
+impl Reference {
+    pub fn new(b: &Bounds3, geometry: u32, primitive: u32) -> Self {
+        let lanes = |v: Vec3, id: u32| Lanes([v.x, v.y, v.z, f32::from_bits(id)]);
+        Reference(Box4 { lo: lanes(b.min, geometry), hi: lanes(b.max, primitive) })
+    }
+
+    /// Geometry and primitive.
+    pub fn ids(&self) -> (u32, u32) {
+        (self.0.lo.0[3].to_bits(), self.0.hi.0[3].to_bits())
+    }
+
+    pub fn bounds(&self) -> Bounds3 {
+        self.0.to_bounds()
+    }
+
+    /// The center, without overflow.
+    #[inline(always)]
+    fn center(&self) -> Lanes {
+        Lanes(core::array::from_fn(|i| self.0.lo.0[i] * 0.5 + self.0.hi.0[i] * 0.5))
+    }
+}
+
+/// The nodes over `references`, which are put into the order of the leaves, and the root.
+pub(crate) fn build(references: &mut [Reference], executor: &dyn Executor) -> (Vec<Node>, Option<Child>) {
+    if references.is_empty() {
+        return (Vec::new(), None);
+    }
+    let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
+    let mut nodes = Vec::new();
+    let root = if references.len() > FORK_ABOVE {
+        let piece = fork(references, 0, whole, 0, executor);
+        nodes.reserve_exact(piece.len());
+        piece.append_to(&mut nodes)
+    } else {
+        subtree(references, 0, whole, 0, &mut nodes)
+    };
+    (nodes, Some(root))
+}
+
+/// A tree in pieces, each built on its own.
+enum Piece {
+    Whole(Vec<Node>, Child),
+    Forked { boxes: [Box4; 2], halves: Box<[Piece; 2]> },
+}
+
+impl Piece {
+    fn len(&self) -> usize {
+        match self {
+            Piece::Whole(nodes, _) => nodes.len(),
+            Piece::Forked { halves, .. } => 1 + halves[0].len() + halves[1].len(),
+        }
+    }
+
+    fn append_to(self, nodes: &mut Vec<Node>) -> Child {
+        let base = nodes.len();
+        match self {
+            Piece::Whole(own, root) => {
+                nodes.extend(own.iter().map(|n| Node { children: n.children.map(|c| c.moved(base)), ..*n }));
+                root.moved(base)
+            }
+            Piece::Forked { boxes, halves } => {
+                nodes.push(Node::new([&boxes[0].to_bounds(), &boxes[1].to_bounds()], [Child::node(0); 2]));
+                let children = halves.map(|half| half.append_to(nodes));
+                nodes[base].children = children;
+                Child::node(base)
+            }
+        }
+    }
+}
+
+fn fork(references: &mut [Reference], first: usize, whole: Box4, depth: usize, executor: &dyn Executor) -> Piece {
+    if references.len() <= FORK_ABOVE {
+        let mut nodes = Vec::with_capacity(references.len() / 2);
+        let root = subtree(references, first, whole, depth, &mut nodes);
+        return Piece::Whole(nodes, root);
+    }
+    let split = split(references, &whole, depth).expect("more references than a leaf holds");
+    let (left, right) = references.split_at_mut(split.left_count);
+    let (mut a, mut b) = (None, None);
+    executor.join(&mut || a = Some(fork(left, first, split.boxes[0], depth + 1, executor)), &mut || {
+        b = Some(fork(right, first + split.left_count, split.boxes[1], depth + 1, executor))
+    });
+    let halves = Box::new([a.expect("executors run both jobs"), b.expect("executors run both jobs")]);
+    Piece::Forked { boxes: split.boxes, halves }
+}
+
+fn subtree(references: &mut [Reference], first: usize, whole: Box4, depth: usize, nodes: &mut Vec<Node>) -> Child {
+    let Some(split) = split(references, &whole, depth) else {
+        return Child::leaf(first, references.len());
+    };
+    let index = nodes.len();
+    nodes.push(Node::new([&split.boxes[0].to_bounds(), &split.boxes[1].to_bounds()], [Child::node(0); 2]));
+    let (left, right) = references.split_at_mut(split.left_count);
+    let left = subtree(left, first, split.boxes[0], depth + 1, nodes);
+    let right = subtree(right, first + split.left_count, split.boxes[1], depth + 1, nodes);
+    nodes[index].children = [left, right];
+    Child::node(index)
+}
+
+struct Split {
+    left_count: usize,
+    boxes: [Box4; 2],
+}
+
+/// Partition the references by the best split; `None` makes a leaf.
+fn split(references: &mut [Reference], whole: &Box4, depth: usize) -> Option<Split> {
+    let n = references.len();
+    if n == 1 {
+        return None;
+    }
+    // Near the depth that traversal has room for, halve: each level then takes one from the logarithm.
+    let levels_needed = usize::BITS - (n - 1).leading_zeros();
+    if depth + levels_needed as usize >= MAX_DEPTH {
+        return (n > MAX_LEAF).then(|| halve(references));
+    }
+    let centers = references.iter().fold(Box4::EMPTY, |b, r| {
+        let c = r.center();
+        Box4 { lo: b.lo.min(c), hi: b.hi.max(c) }
+    });
+    let bins = if n <= 2 * MAX_LEAF { BINS / 2 } else { BINS };
+    let binning = Binning::new(&centers, bins);
+    let best = binning.best_plane(references, bins);
+    let leaf_cost = n as f32 * whole.half_area();
+    match best {
+        Some(plane) if n > MAX_LEAF || plane.cost + NODE_COST * whole.half_area() < leaf_cost => {
+            let left_count = partition(references, |r| binning.bin(r, plane.axis) <= plane.bin);
+            debug_assert_eq!(left_count, plane.left_count);
+            Some(Split { left_count, boxes: plane.boxes })
+        }
+        _ => (n > MAX_LEAF).then(|| halve(references)),
+    }
+}
+
+/// Cut in the middle of the order they are in.
+fn halve(references: &mut [Reference]) -> Split {
+    let left_count = references.len() / 2;
+    let around = |r: &[Reference]| r.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
+    Split { left_count, boxes: [around(&references[..left_count]), around(&references[left_count..])] }
+}
+
+/// Put those for which `left` holds first; returns how many they are. Without a branch on the data.
+fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) -> usize {
+    let mut count = 0;
+    for i in 0..references.len() {
+        let r = references[i];
+        references[i] = references[count];
+        references[count] = r;
+        count += usize::from(left(&r));
+    }
+    count
+}
+
+/// The map from centers to bins.
+struct Binning {
+    low: Lanes,
+    scale: Lanes,
+}
+
+/// A plane after bin `bin` of `axis`.
+struct Plane {
+    axis: usize,
+    bin: usize,
+    cost: f32,
+    left_count: usize,
+    boxes: [Box4; 2],
+}
+
+/// Adding it to a small positive f32 leaves the nearest integer in the low bits.
+const INTEGER_IN_LOW_BITS: f32 = 8_388_608.0;
+
+impl Binning {
+    fn new(centers: &Box4, bins: usize) -> Self {
+        let scale = core::array::from_fn(|k| {
+            let size = centers.hi.0[k] - centers.lo.0[k];
+            let scale = (bins as f32 * 0.998) / size;
+            if size > 0.0 && scale.is_finite() { scale } else { 0.0 }
+        });
+        Binning { low: centers.lo, scale: Lanes(scale) }
+    }
+
+    #[inline(always)]
+    fn all_bins(&self, r: &Reference) -> [usize; 4] {
+        let c = r.center();
+        core::array::from_fn(|k| {
+            let x = (c.0[k] - self.low.0[k]) * self.scale.0[k] - 0.499;
+            (((x + 1.0) + INTEGER_IN_LOW_BITS).to_bits() as usize).wrapping_sub(1) & (BINS - 1)
+        })
+    }
+
+    #[inline(always)]
+    fn bin(&self, r: &Reference, axis: usize) -> usize {
+        self.all_bins(r)[axis & 3]
+    }
+
+    fn best_plane(&self, references: &[Reference], bins: usize) -> Option<Plane> {
+        let mut boxes = [[Box4::EMPTY; BINS]; 3];
+        let mut counts = [[0_u32; BINS]; 3];
+        for r in references {
+            let at = self.all_bins(r);
+            for axis in 0..3 {
+                let b = &mut boxes[axis][at[axis]];
+                *b = b.union(r.0);
+                counts[axis][at[axis]] += 1;
+            }
+        }
+        let mut best: Option<Plane> = None;
+        for axis in (0..3).filter(|&a| self.scale.0[a] > 0.0) {
+            let plane = sweep(axis, &boxes[axis], &counts[axis], bins, references.len());
+            if plane.as_ref().is_some_and(|p| best.as_ref().is_none_or(|b| p.cost < b.cost)) {
+                best = plane;
+            }
+        }
+        best
+    }
+}
+
+/// The best plane of one axis.
+fn sweep(axis: usize, boxes: &[Box4; BINS], counts: &[u32; BINS], bins: usize, n: usize) -> Option<Plane> {
+    let mut right = [Box4::EMPTY; BINS + 1];
+    for i in (1..bins).rev() {
+        right[i] = right[i + 1].union(boxes[i]);
+    }
+    let (mut left, mut left_count) = (Box4::EMPTY, 0);
+    let mut best: Option<Plane> = None;
+    for i in 0..bins - 1 {
+        left = left.union(boxes[i]);
+        left_count += counts[i] as usize;
+        if left_count == 0 || left_count == n {
+            continue;
+        }
+        let cost = left_count as f32 * left.half_area() + (n - left_count) as f32 * right[i + 1].half_area();
+        if best.as_ref().is_none_or(|b| cost < b.cost) {
+            best = Some(Plane { axis, bin: i, cost, left_count, boxes: [left, right[i + 1]] });
+        }
+    }
+    best
+}
