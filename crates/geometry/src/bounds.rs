@@ -127,7 +127,7 @@ impl Bounds3 {
             near = if enter > near { enter } else { near };
             far = if leave < far { leave } else { far };
         }
-        far *= FAR_PAD;
+        far = pad_far(far);
         far = if ray.t_max < far { ray.t_max } else { far };
         (near <= far).then_some((near, far))
     }
@@ -136,6 +136,13 @@ impl Bounds3 {
 /// How much later than computed a ray is taken to leave a box: `1 + 2 gamma(10)`. 3 roundings are the box test's own; the
 /// other 7 cover a watertight triangle test whose vertices are displaced by a few roundings of their distance.
 pub const FAR_PAD: f32 = 1.0 + 2.0 * crate::rounding::gamma(10);
+
+/// A little after `far`, whatever its sign; monotone.
+#[inline(always)]
+pub fn pad_far(far: f32) -> f32 {
+    let (after, before) = (far * FAR_PAD, far * (2.0 - FAR_PAD));
+    if after > before { after } else { before }
+}
 
 /// `1 / direction`; a zero gives the infinity of its sign, which [`Bounds3::intersect`] knows how to use.
 #[inline]

@@ -2,7 +2,7 @@
 
 use crate::triangle::Corners;
 use kirkas_geometry::Bounds3;
-use kirkas_geometry::bounds::FAR_PAD;
+use kirkas_geometry::bounds::pad_far;
 
 /// An inner node.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ impl Node {
             }
         }
         for f in &mut far {
-            *f *= FAR_PAD;
+            *f = pad_far(*f);
             *f = if limit < *f { limit } else { *f };
         }
         (near, [near[0] <= far[0], near[1] <= far[1]])

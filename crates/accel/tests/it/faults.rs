@@ -1,0 +1,59 @@
+//! What a user can get wrong is an error, never a panic.
+
+use crate::common::{Boxes, geometry, triangles, world};
+use kirkas_accel::*;
+use kirkas_geometry::{AnimatedTransform, Bounds3, DAffine3, DMat3, Vec3};
+use std::sync::Arc;
+
+fn error(scene: SceneGeometry) -> String {
+    match Accel::build(AccelKind::Bvh2, scene, &Serial) {
+        Ok(_) => "no error".into(),
+        Err(e) => e.to_string(),
+    }
+}
+
+#[test]
+fn each_fault_is_named_with_its_place() {
+    let bad_vertex = triangles(&[[Vec3::ZERO, Vec3::X, Vec3::new(0.0, f32::NAN, 0.0)]]);
+    assert_eq!(error(world(vec![bad_vertex])), "vertex 2 of geometry 0 in the world is not a finite number");
+
+    let lost = Shape::Triangles { positions: Arc::new(vec![Vec3::ZERO; 3]), indices: Arc::new(vec![[0, 1, 3]]) };
+    let scene = SceneGeometry { aggregates: vec![vec![], vec![geometry(lost)]], ..SceneGeometry::default() };
+    assert_eq!(error(scene), "triangle 0 of geometry 0 in aggregate 1 uses vertex 3, but there are 3");
+
+    for radius in [-1.0, f32::INFINITY] {
+        let ball = Shape::Spheres(Arc::new(vec![Sphere { center: Vec3::ZERO, radius }]));
+        assert!(error(world(vec![ball])).starts_with("sphere 0 of geometry 0"));
+    }
+    let boxes = Boxes(vec![Bounds3 { min: Vec3::ZERO, max: Vec3::NAN }]);
+    assert!(error(world(vec![Shape::User(Arc::new(boxes))])).starts_with("user shape 0"));
+
+    let place = |aggregate, m: DAffine3| SceneGeometry {
+        aggregates: vec![vec![]],
+        instances: vec![Instance { aggregate, world_from_object: AnimatedTransform::still(m), mask: 1 }],
+        ..SceneGeometry::default()
+    };
+    assert_eq!(error(place(3, DAffine3::IDENTITY)), "instance 0 places aggregate 3, but there are 1");
+    let flat = DAffine3 { matrix3: DMat3::ZERO, ..DAffine3::IDENTITY };
+    assert_eq!(error(place(0, flat)), "the transform of instance 0 cannot be inverted at time 0");
+    let scene = SceneGeometry { shutter: (1.0, 0.0), ..SceneGeometry::default() };
+    assert_eq!(error(scene), "the shutter cannot be open from 1 to 0");
+}
+
+/// As many users as primitives can be claimed without memory.
+struct Endless;
+impl UserShape for Endless {
+    fn len(&self) -> usize {
+        1 << 29
+    }
+    fn bounds(&self, _: u32) -> Bounds3 {
+        Bounds3::EMPTY
+    }
+    fn intersect(&self, _: u32, _: &kirkas_geometry::Ray, _: &mut dyn FnMut(f32, f32, f32) -> bool) {}
+}
+
+#[test]
+fn too_many_primitives_are_refused() {
+    let text = error(world(vec![Shape::User(Arc::new(Endless))]));
+    assert_eq!(text, "the world holds 536870912 primitives; the limit is 268435456");
+}

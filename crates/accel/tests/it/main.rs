@@ -1,0 +1,10 @@
+//! The tests of accel as its users see it.
+
+mod agreement;
+mod common;
+mod faults;
+mod meshes;
+mod proptests;
+mod semantics;
+mod surfaces;
+mod watertight;

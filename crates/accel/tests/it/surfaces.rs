@@ -1,0 +1,78 @@
+//! A ray that starts on a surface, moved off it by the error bound of the point, never meets that surface again.
+
+use crate::common::{Random, build, closest, triangles, world};
+use kirkas_accel::{AccelKind, Shape, Sphere};
+use kirkas_geometry::rounding::{gamma, offset_origin};
+use kirkas_geometry::{DVec3, Ray, Vec3};
+use std::sync::Arc;
+
+#[test]
+fn a_plane_of_triangles_is_left_for_good() {
+    for (seed, scale) in [(1, 1e-6_f32), (2, 1.0), (3, 1e6)] {
+        let r = &mut Random::new(seed);
+        for _ in 0..200 {
+            // A tilted parallelogram, cut into two triangles, somewhere.
+            let (p, a, b) = (r.cube() * 3.0 * scale, r.cube() * scale, r.cube() * scale);
+            // On a coarse grid, so that its four corners are exactly coplanar.
+            let snap = |v: Vec3| (v * (1024.0 / scale)).round() * (scale / 1024.0);
+            let (p, a, b) = if scale == 1.0 { (snap(p), snap(a), snap(b)) } else { (p, a, b) };
+            let corners = [[p, p + a, p + a + b], [p, p + a + b, p + b]];
+            let accel = build(AccelKind::Bvh2, &world(vec![triangles(&corners)]));
+            let own = usize::from(scale != 1.0);
+            for _ in 0..300 {
+                let k = (r.below(2)) as usize;
+                let [v0, v1, v2] = corners[k];
+                let (mut u, mut v) = (r.unit(), r.unit());
+                if u + v > 1.0 {
+                    (u, v) = (1.0 - u, 1.0 - v);
+                }
+                let point = v0 * (1.0 - u - v) + v1 * u + v2 * v;
+                let error =
+                    ((v0 * (1.0 - u - v)).abs() + (v1 * u).abs() + (v2 * v).abs()).as_dvec3() * f64::from(gamma(7));
+                let normal = (v1 - v0).as_dvec3().cross((v2 - v0).as_dvec3()).normalize();
+                let mut direction = r.cube();
+                if r.below(4) == 0 {
+                    // Grazing.
+                    direction =
+                        (v1 - v0) / scale * (r.unit() - 0.5) + (v2 - v0) / scale * (r.unit() - 0.5) + direction * 1e-6;
+                }
+                let origin = offset_origin(point.as_dvec3(), error, normal, direction.as_dvec3());
+                let hit = closest(&accel, &Ray::new(origin, direction));
+                // Where rounding leaves the corners not quite coplanar, only the own triangle counts.
+                let again = hit.filter(|h| own == 0 || h.primitive as usize == k);
+                assert_eq!(again, None, "scale {scale}: {corners:?} from {origin:?} along {direction:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sphere_is_left_for_good_and_met_on_its_far_side() {
+    for (seed, scale) in [(4, 1e-6_f32), (5, 1.0), (6, 1e6)] {
+        let r = &mut Random::new(seed);
+        for _ in 0..20_000 {
+            let ball = Sphere { center: r.cube() * 3.0 * scale, radius: (r.unit() + 0.01) * scale };
+            let accel = build(AccelKind::Bvh2, &world(vec![Shape::Spheres(Arc::new(vec![ball]))]));
+            let normal = r.cube().as_dvec3().normalize();
+            let point: DVec3 = ball.center.as_dvec3() + normal * f64::from(ball.radius);
+            let error = point.as_vec3().abs().as_dvec3() * f64::from(gamma(5));
+            let direction = r.cube();
+            let origin = offset_origin(point, error, normal, direction.as_dvec3());
+            let hit = closest(&accel, &Ray::new(origin, direction));
+            if direction.as_dvec3().dot(normal) > 0.0 {
+                assert_eq!(hit, None);
+            } else {
+                let chord = -2.0 * f64::from(ball.radius) * direction.as_dvec3().dot(normal)
+                    / direction.as_dvec3().length_squared();
+                // A chord's end moves by as much as sqrt(8 r h) when its start moves by h.
+                let radius = f64::from(ball.radius);
+                let slack = 1e-6 * radius + 6.0 * (radius * error.max_element()).sqrt() + 9.0 * error.max_element();
+                if let Some(h) = hit {
+                    assert!((f64::from(h.t) - chord).abs() * f64::from(direction.length()) < slack);
+                } else {
+                    assert!(chord < slack);
+                }
+            }
+        }
+    }
+}
