@@ -12,7 +12,11 @@ pub mod toml;
 
 pub mod assets;
 pub mod failure;
+pub mod manual;
 pub mod mesh_scene;
+pub mod schema;
+
+mod json;
 
 pub use assets::{FormatAssets, MeshCache};
 pub use failure::Failure;

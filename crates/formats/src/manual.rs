@@ -1,0 +1,106 @@
+//! The reference page of all types and parameters, cut from the catalogue's tables.
+
+use kirkas_scene::{Catalog, Fallback, Kind, ParamSpec, ParamType};
+
+/// The page as Markdown.
+pub fn markdown(catalog: &Catalog) -> String {
+    let mut out = String::from(
+        "# Types and parameters\n\n\
+         Cut from the tables in the program; do not edit. Colours are linear Rec.709 `[r, g, b]`, one number for grey, or\n\
+         `\"#rrggbb\"` in sRGB. Angles are in degrees. Transforms apply in written order.\n",
+    );
+    for kind in Kind::ALL {
+        out += &format!("\n## {}\n\n{}\n", kind.section(), heading(kind));
+        for spec in catalog.of_kind(kind) {
+            out += &format!("\n### {} `{}`\n\n{}\n", kind.singular(), spec.name, spec.doc);
+            table(&mut out, spec.params);
+        }
+        let common = catalog.common(kind);
+        if !common.is_empty() {
+            out += &format!("\n### Every {}\n", kind.singular());
+            table(&mut out, common);
+        }
+    }
+    out
+}
+
+fn heading(kind: Kind) -> String {
+    let section = kind.section();
+    match kind.default_type() {
+        Some(default) => {
+            format!("One for a scene, written `[{section}]`; where no `type` is written, it is `{default}`.")
+        }
+        None => format!("Written `[{section}.NAME]` with `type = \"...\"`."),
+    }
+}
+
+fn table(out: &mut String, rows: &[ParamSpec]) {
+    if rows.is_empty() {
+        return;
+    }
+    *out += "\n| parameter | takes | default | |\n|---|---|---|---|\n";
+    for row in rows {
+        let unit = if row.unit.is_empty() { String::new() } else { format!(", {}", row.unit) };
+        let cells = [
+            format!("`{}`", row.name),
+            format!("{}{unit}{}", takes(row.ty), range(row)),
+            fallback(row),
+            row.doc.into(),
+        ];
+        *out += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
+    }
+}
+
+fn takes(ty: ParamType) -> String {
+    match ty {
+        ParamType::Bool => "true or false".into(),
+        ParamType::Integer => "whole number".into(),
+        ParamType::Number => "number".into(),
+        ParamType::Text => "text".into(),
+        ParamType::Choice(words) => words.iter().map(|w| format!("`\"{w}\"`")).collect::<Vec<_>>().join(", "),
+        ParamType::Vector2 => "`[x, y]`".into(),
+        ParamType::Vector => "`[x, y, z]`".into(),
+        ParamType::Color => "colour".into(),
+        ParamType::ColorTexture => "colour or texture".into(),
+        ParamType::NumberTexture => "number or texture".into(),
+        ParamType::Reference(kind) => format!("name of {}", article(kind.singular())),
+        ParamType::References(kind) => format!("list of names of {}", kind.section()),
+        ParamType::Path => "path".into(),
+        ParamType::Transform => "transform".into(),
+        ParamType::Motion => "key frames".into(),
+        ParamType::Numbers => "list of numbers".into(),
+        ParamType::Vectors => "list of `[x, y, z]`".into(),
+        ParamType::Gradient => "list of `[position, colour]`".into(),
+    }
+}
+
+fn article(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {noun}")
+}
+
+fn range(row: &ParamSpec) -> String {
+    match row.range {
+        (low, high) if low == f64::MIN_POSITIVE && high == f64::INFINITY => ", above 0".into(),
+        (low, high) if low.is_finite() && high == f64::INFINITY => format!(", {low} or more"),
+        (low, high) if low.is_finite() && high.is_finite() => format!(", {low} to {high}"),
+        (_, high) if high.is_finite() => format!(", {high} or less"),
+        _ => String::new(),
+    }
+}
+
+fn fallback(row: &ParamSpec) -> String {
+    match row.fallback {
+        Fallback::Required => "required".into(),
+        Fallback::Absent => "none".into(),
+        Fallback::Bool(b) => format!("`{b}`"),
+        Fallback::Number(n) => format!("`{n}`"),
+        Fallback::Text(t) => format!("`\"{t}\"`"),
+        Fallback::Vector2(v) => format!("`{}`", list(&v)),
+        Fallback::Vector(v) => format!("`{}`", list(&v)),
+    }
+}
+
+fn list(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
+}
