@@ -1,0 +1,145 @@
+//! The surface of triangles over shared vertices, in part space.
+
+use super::analytic::flat_error;
+use super::{AreaSample, Part, Surface, SurfacePoint};
+use kirkas_accel::Shape;
+use kirkas_geometry::warp::square_to_uniform_triangle;
+use kirkas_geometry::{Bounds3, DAffine3, DVec2, DVec3, Ray, Vec2, Vec3};
+use std::sync::{Arc, OnceLock};
+
+/// Some triangles of a mesh: those with one material.
+pub struct TriangleSurface {
+    mesh: Arc<PlacedMesh>,
+    indices: Arc<Vec<[u32; 3]>>,
+    bounds: Bounds3,
+    /// Area of the first, of the first two, ...
+    cumulative_area: OnceLock<Vec<f64>>,
+}
+
+/// What all parts of a mesh share, in part space.
+pub struct PlacedMesh {
+    /// Corners.
+    pub positions: Arc<Vec<Vec3>>,
+    /// Shading normals, one per position (zero where unknown), or empty: flat.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, one per position, or empty: each triangle its own barycentric ones.
+    pub uvs: Vec<Vec2>,
+    /// For solid textures.
+    pub object_from_part: DAffine3,
+}
+
+impl TriangleSurface {
+    /// The part that these triangles make.
+    pub fn part(mesh: Arc<PlacedMesh>, indices: Vec<[u32; 3]>, own_material: Option<String>) -> Part {
+        let indices = Arc::new(indices);
+        let corner = |&i: &u32| mesh.positions[i as usize];
+        let bounds = Bounds3::around(indices.iter().flatten().map(corner));
+        let shape = Shape::Triangles { positions: mesh.positions.clone(), indices: indices.clone() };
+        let surface = TriangleSurface { mesh, indices, bounds, cumulative_area: OnceLock::new() };
+        Part { shape, surface: Arc::new(surface), own_material }
+    }
+
+    fn corners(&self, primitive: u32) -> [DVec3; 3] {
+        self.indices[primitive as usize].map(|i| self.mesh.positions[i as usize].as_dvec3())
+    }
+
+    fn uvs(&self, primitive: u32) -> [DVec2; 3] {
+        if self.mesh.uvs.is_empty() {
+            return [DVec2::ZERO, DVec2::X, DVec2::Y];
+        }
+        self.indices[primitive as usize].map(|i| self.mesh.uvs[i as usize].as_dvec2())
+    }
+
+    fn shading_normal(&self, primitive: u32, weights: [f64; 3], normal: DVec3) -> DVec3 {
+        if self.mesh.normals.is_empty() {
+            return normal;
+        }
+        let n = self.indices[primitive as usize].map(|i| self.mesh.normals[i as usize].as_dvec3());
+        // Files whose normals point inward where their winding says outward are common: the winding wins.
+        let sign = if (n[0] + n[1] + n[2]).dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        (mix(n, weights) * sign).try_normalize().unwrap_or(normal)
+    }
+
+    fn cumulative_area(&self) -> &[f64] {
+        self.cumulative_area.get_or_init(|| {
+            let mut sum = 0.0;
+            (0..self.indices.len() as u32).map(|i| (sum += area(self.corners(i)), sum).1).collect()
+        })
+    }
+}
+
+/// Weighted sum of three points.
+fn mix(p: [DVec3; 3], w: [f64; 3]) -> DVec3 {
+    p[0] * w[0] + p[1] * w[1] + p[2] * w[2]
+}
+
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
+}
+
+/// Unit normal by winding; any for a triangle without area, which no ray hits.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).try_normalize().unwrap_or_else(|| {
+        // Sizes below 1e-150 and above 1e150 cannot occur in f32, but their squares' product may still vanish.
+        let (e1, e2) = (b - a, c - a);
+        let large = e1.abs().max(e2.abs()).max_element();
+        (e1 / large).cross(e2 / large).try_normalize().unwrap_or(DVec3::Z)
+    })
+}
+
+/// Derivative of position by `uv[0]` (zero where the texture coordinates say nothing).
+fn tangent(p: [DVec3; 3], uv: [DVec2; 3]) -> DVec3 {
+    let (e1, e2) = (p[1] - p[0], p[2] - p[0]);
+    let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let determinant = d1.x * d2.y - d1.y * d2.x;
+    let t = (e1 * d2.y - e2 * d1.y) / determinant;
+    if t.is_finite() { t } else { DVec3::ZERO }
+}
+
+impl Surface for TriangleSurface {
+    fn point(&self, primitive: u32, u: f32, v: f32, _t: f32, _ray: &Ray) -> SurfacePoint {
+        let (u, v) = (f64::from(u), f64::from(v));
+        let weights = [1.0 - u - v, u, v];
+        let (corners, uvs) = (self.corners(primitive), self.uvs(primitive));
+        let position = mix(corners, weights);
+        let normal = normal(corners);
+        // The second term: the position's own roundings and those of the plane test, both in f64.
+        let largest = corners[0].abs().max(corners[1].abs()).max(corners[2].abs()).max_element();
+        SurfacePoint {
+            position,
+            error: flat_error(position) + 1e-14 * largest,
+            normal,
+            shading_normal: self.shading_normal(primitive, weights, normal),
+            uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
+            tangent: tangent(corners, uvs),
+            object_position: self.mesh.object_from_part.transform_point3(position),
+        }
+    }
+
+    fn area(&self) -> Option<f64> {
+        self.cumulative_area().last().copied().filter(|a| *a > 0.0 && a.is_finite())
+    }
+
+    fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample> {
+        let total = self.area()?;
+        let areas = self.cumulative_area();
+        let target = f64::from(u.0) * total;
+        let i = areas.partition_point(|&a| a <= target).min(areas.len() - 1);
+        let before = if i == 0 { 0.0 } else { areas[i - 1] };
+        let rest = ((target - before) / (areas[i] - before)).clamp(0.0, 1.0);
+        let (b1, b2) = square_to_uniform_triangle((rest as f32, u.1));
+        let (b1, b2) = (f64::from(b1), f64::from(b2));
+        let weights = [1.0 - b1 - b2, b1, b2];
+        let (corners, uvs) = (self.corners(i as u32), self.uvs(i as u32));
+        Some(AreaSample {
+            position: mix(corners, weights),
+            normal: normal(corners),
+            uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
+            pdf_area: 1.0 / total,
+        })
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+}
