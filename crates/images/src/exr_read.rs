@@ -1,33 +1,25 @@
-//! OpenEXR in: flat files of any compression the `exr` crate knows, tiled or not, of one part or several.
+//! OpenEXR in: flat files, tiled or not, of one part or several, of any compression but B44.
 
-use crate::error::{ImageError, Result, damaged};
+use crate::error::{Result, damaged};
+use crate::exr_guard::{check_claims, translate};
 use crate::exr_header::attributes_of;
 use crate::image::{Channel, ChannelData, Image, Window};
-use crate::limits::check_size;
 use exr::meta::MetaData;
-use exr::meta::header::Header;
 use exr::prelude as x;
 use exr::prelude::{ReadChannels as _, ReadLayers as _};
 use std::io::Cursor;
 
 /// Read an EXR file: every channel of every part at full resolution, and what its header says in texts and numbers.
 ///
-/// With several parts a channel is named `part.channel`, and the parts must share one data window. Deep samples
-/// and subsampled channels are refused.
+/// With several parts a channel is named `part.channel`, and the parts must share one data window. Deep samples,
+/// subsampled channels and B44 compression are refused.
 pub fn read_exr(bytes: &[u8]) -> Result<Image> {
     // Read the header alone and judge what it claims, before memory is taken.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(translate)?;
     let first = meta.headers.first().ok_or_else(|| damaged("EXR", "it has no part"))?;
+    check_claims(&meta.headers, bytes)?;
     let window = window_of(first.own_attributes.layer_position, first.layer_size);
-    let mut bytes_per_pixel = 0;
-    for header in &meta.headers {
-        check_part(header, window)?;
-        bytes_per_pixel +=
-            header.channels.list.iter().map(|channel| channel.sample_type.bytes_per_sample() as u64).sum::<u64>();
-    }
-    check_size("EXR", [first.layer_size.0 as u64, first.layer_size.1 as u64], bytes_per_pixel, bytes.len())?;
     let display = first.shared_attributes.display_window;
-    check_chunks(&meta.headers, bytes.len())?;
 
     // Read the samples.
     let file = x::read()
@@ -60,45 +52,10 @@ pub fn read_exr(bytes: &[u8]) -> Result<Image> {
     Ok(image)
 }
 
-fn check_part(header: &Header, window: Window) -> Result<()> {
-    let unsupported = |what: String, cure| Err(ImageError::Unsupported { format: "EXR", what, cure });
-    if header.deep {
-        return unsupported("deep samples".into(), "flatten it with `exrflatten` or in a compositor");
-    }
-    if let Some(channel) = header.channels.list.iter().find(|channel| channel.sampling != x::Vec2(1, 1)) {
-        let what = format!("a subsampled channel, `{}`", channel.name);
-        return unsupported(what, "save it again with full-resolution RGB channels");
-    }
-    if window_of(header.own_attributes.layer_position, header.layer_size) != window {
-        return unsupported("parts with different data windows".into(), "split it with `exrmultipart -separate`");
-    }
-    Ok(())
-}
-
-/// Each chunk needs at least its place in the table, so a short file has few.
-fn check_chunks(headers: &[Header], file_length: usize) -> Result<()> {
-    let chunks = headers.iter().fold(0usize, |sum, header| sum.saturating_add(header.chunk_count));
-    if chunks > file_length / 8 {
-        return Err(damaged("EXR", format!("{file_length} bytes cannot hold {chunks} chunks")));
-    }
-    Ok(())
-}
-
 fn window_of(position: x::Vec2<i32>, size: x::Vec2<usize>) -> Window {
     Window { x: position.0, y: position.1, width: size.0 as u32, height: size.1 as u32 }
 }
 
 fn lossy(text: &x::Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
-}
-
-fn translate(error: x::Error) -> ImageError {
-    match error {
-        x::Error::NotSupported(what) => ImageError::Unsupported {
-            format: "EXR",
-            what: what.into_owned(),
-            cure: "save it again as flat scan lines with ZIP compression",
-        },
-        other => damaged("EXR", other),
-    }
 }

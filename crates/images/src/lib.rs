@@ -15,6 +15,7 @@ mod limits;
 pub mod srgb;
 
 mod decode;
+mod exr_guard;
 mod exr_header;
 mod exr_read;
 mod exr_write;

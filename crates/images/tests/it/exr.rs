@@ -1,6 +1,7 @@
 //! EXR: what goes in comes out, bit for bit.
 
-use crate::samples::{data_folder, rich_image, smooth_rgb};
+use crate::samples::{data_folder, foreign_exr, rich_image, smooth_rgb};
+use exr::prelude::Compression;
 use kirkas_images::*;
 
 #[test]
@@ -88,6 +89,45 @@ fn a_size_bomb_is_refused() {
         let message = read_exr(&file).unwrap_err().to_string();
         assert!(message.contains(&format!("{side} x {side} pixels")) && message.contains(expected), "{message}");
     }
+}
+
+#[test]
+fn every_compression_but_b44_is_read() {
+    use Compression::*;
+    for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24, DWAA(None), DWAB(None)] {
+        for tiles in [false, true] {
+            let image = read_exr(&foreign_exr(compression, tiles)).unwrap();
+            assert_eq!(image.channel("id").unwrap().integers().unwrap(), (0..23 * 37).collect::<Vec<u32>>());
+            for (i, [r, g, b]) in image.rgb().unwrap().pixels.into_iter().enumerate() {
+                // DWA keeps what an eye sees, PXR24 24 bits.
+                let expected = (i % 23) as f32 * 0.04;
+                let near = |value: f32| (value - expected).abs() < 0.02;
+                assert!(near(r) && near(g) && near(b), "{compression:?}: {r} {g} {b} for {expected}");
+            }
+        }
+    }
+    let message = read_exr(&foreign_exr(B44, false)).unwrap_err().to_string();
+    assert!(message.ends_with("save it again with ZIP or PIZ compression"), "{message}");
+}
+
+#[test]
+fn chunks_that_lie_are_refused() {
+    let check = |compression, tiles, at: usize, lie: &[u8], expected: &str| {
+        let mut file = foreign_exr(compression, tiles);
+        // The table of positions ends where the first chunk begins, and begins with that position.
+        let position = |at: usize| u64::from_le_bytes(file[at..at + 8].try_into().unwrap()) as usize;
+        let chunks = [37, 6, 2].into_iter();
+        let table = |chunks: usize| (8..file.len() - 8).find(|&at| position(at) == at + 8 * chunks);
+        let first = chunks.filter_map(table).next().unwrap();
+        let start = position(first) + at;
+        file[start..start + lie.len()].copy_from_slice(lie);
+        let message = read_exr(&file).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    };
+    // The row of a line, the level of a tile, and the claimed size in a DWA block (behind row, length and version).
+    check(Compression::ZIP1, false, 0, &[1], "in the wrong places");
+    check(Compression::ZIP16, true, 8, &[1], "in the wrong places");
+    check(Compression::DWAA(None), false, 16, &[0, 0, 0, 0, 0, 0, 0, 1], "larger than it can be");
 }
 
 #[test]

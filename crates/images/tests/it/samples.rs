@@ -61,11 +61,35 @@ pub fn valid_files() -> Vec<(&'static str, Vec<u8>)> {
         ("png", write_png16(40, 33, &to_srgb16(&rgb, 0.0, ToneCurve::Linear), &texts).unwrap()),
         ("exr", write_exr(&rich_image(), ExrCompression::Zip).unwrap()),
         ("exr", write_exr(&Image::from_rgb(&rgb, ChannelData::F16), ExrCompression::None).unwrap()),
+        ("exr", foreign_exr(exr::prelude::Compression::PIZ, true)),
+        ("exr", foreign_exr(exr::prelude::Compression::DWAA(None), false)),
+        ("exr", foreign_exr(exr::prelude::Compression::PXR24, true)),
         ("hdr", write_hdr(&rgb, &texts).unwrap()),
         ("jpg", coded(image::ImageFormat::Jpeg)),
         ("bmp", coded(image::ImageFormat::Bmp)),
         ("tga", coded(image::ImageFormat::Tga)),
     ]
+}
+
+/// A small EXR file as other programs write them: any compression, lines or tiles, mixed channels.
+pub fn foreign_exr(compression: exr::prelude::Compression, tiles: bool) -> Vec<u8> {
+    use exr::prelude as x;
+    let value = |i: u32| (i % 23) as f32 * 0.04;
+    let half = x::FlatSamples::F16((0..23 * 37).map(|i| x::f16::from_f32(value(i))).collect());
+    let list = vec![
+        x::AnyChannel::new("B", half.clone()),
+        x::AnyChannel::new("G", half),
+        x::AnyChannel::new("R", x::FlatSamples::F32((0..23 * 37).map(value).collect())),
+        x::AnyChannel::new("id", x::FlatSamples::U32((0..23 * 37).collect())),
+    ];
+    let blocks = if tiles { x::Blocks::Tiles(x::Vec2(16, 16)) } else { x::Blocks::ScanLines };
+    let encoding = x::Encoding { compression, blocks, line_order: x::LineOrder::Increasing };
+    let channels = x::AnyChannels::sort(list.into());
+    let layer = x::Layer::new((23usize, 37usize), x::LayerAttributes::named("main"), encoding, channels);
+    let mut file = Vec::new();
+    let part = x::Image::from_layer(layer);
+    x::WritableImage::write(&part).non_parallel().to_buffered(std::io::Cursor::new(&mut file)).unwrap();
+    file
 }
 
 /// Bits as if at random (the finaliser of MurmurHash3).
