@@ -28,7 +28,7 @@
 //!
 //! ## References
 //!
-//! Weight of `b`: `(M + 1) / 2` with `M = sin(frequency x + amplitude N(p))`, `N` as in `noise`. After K. Perlin: "An Image
+//! Weight of `a`: `(M + 1) / 2` with `M = sin(frequency x + amplitude N(p))`, `N` as in `noise`. After K. Perlin: "An Image
 //! Synthesizer", 1985, <https://doi.org/10.1145/325165.325247>, as in MIT 6.837 (2004), assignment 6.
 
 use super::noise::{A, B, OCTAVES, octaves};
@@ -71,7 +71,7 @@ impl Marble {
     }
 
     pub(super) fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
-        textures.mix(self.sources, self.layers.weight(at.position.x, at), at.original)
+        textures.mix(self.sources, self.layers.weight_of_a(at.position.x, at), at.original)
     }
 }
 
@@ -84,8 +84,8 @@ impl Layers {
         }
     }
 
-    /// Of `b`, at a place whose coordinate across the layers is `across`.
-    pub(super) fn weight(&self, across: f64, at: &PatternPoint) -> f64 {
+    /// Of `a`, at a place whose coordinate across the layers is `across`.
+    pub(super) fn weight_of_a(&self, across: f64, at: &PatternPoint) -> f64 {
         let phase = self.frequency * across + self.amplitude * turbulence(at.position, self.octaves);
         if phase.is_finite() { 0.5 + 0.5 * sin(phase) } else { 0.5 }
     }

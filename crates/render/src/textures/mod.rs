@@ -164,10 +164,10 @@ impl Textures {
         }
     }
 
-    /// `a` where `weight` is 0, `b` where it is 1.
-    fn mix(&self, [a, b]: [ColorSource; 2], weight: f64, point: &TexturePoint) -> [f32; 4] {
-        let (a, b, w) = (self.lookup(a, point), self.lookup(b, point), weight as f32);
-        std::array::from_fn(|i| a[i] * (1.0 - w) + b[i] * w)
+    /// `a` where `weight_of_a` is 1, `b` where it is 0.
+    fn mix(&self, [a, b]: [ColorSource; 2], weight_of_a: f64, point: &TexturePoint) -> [f32; 4] {
+        let (a, b, w) = (self.lookup(a, point), self.lookup(b, point), weight_of_a as f32);
+        std::array::from_fn(|i| a[i] * w + b[i] * (1.0 - w))
     }
 
     fn extend(

@@ -4,7 +4,7 @@
 //!
 //! ## Parameters
 //!
-//! - `a`, `b` (colour or texture, default black and white): the two that are mixed.
+//! - `a`, `b` (colour or texture, default black and white): the two that are mixed; `a` where the noise is high.
 //! - `octaves` (whole number, default 1): layers, each twice as fine and half as strong.
 //! - and those of all textures: `transform` (scale it to make the blotches larger), `space`.
 //!
@@ -21,12 +21,11 @@
 //!
 //! ## Limits
 //!
-//! Blotches are about one unit apart; the pattern repeats after 256 units. Weights beyond 0 and 1, which several octaves
-//! can reach, are cut off.
+//! Blotches are about one unit apart; the pattern repeats after 256 units. Weights beyond 0 and 1 are cut off.
 //!
 //! ## References
 //!
-//! `N(p) = noise(p) + noise(2 p) / 2 + noise(4 p) / 4 + ...`, weight of `b`: `(N + 1) / 2`. As in MIT 6.837 (2004),
+//! `N(p) = noise(p) + noise(2 p) / 2 + noise(4 p) / 4 + ...`, weight of `a`: `N + 1/2`. As in MIT 6.837 (2004),
 //! assignment 6, with the noise of K. Perlin: "Improving Noise", 2002, <https://doi.org/10.1145/566654.566636>.
 
 use super::perlin::turbulence;
@@ -60,8 +59,8 @@ impl Noise {
     }
 
     pub(super) fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
-        let weight = (0.5 + 0.5 * turbulence(at.position, self.octaves)).clamp(0.0, 1.0);
-        textures.mix(self.sources, weight, at.original)
+        let weight_of_a = (0.5 + turbulence(at.position, self.octaves)).clamp(0.0, 1.0);
+        textures.mix(self.sources, weight_of_a, at.original)
     }
 }
 

@@ -29,7 +29,7 @@
 //!
 //! ## References
 //!
-//! Weight of `b`: `(M + 1) / 2` with `M = sin(frequency sqrt(x^2 + z^2) + amplitude N(p))`, `N` as in `noise`. After
+//! Weight of `a`: `(M + 1) / 2` with `M = sin(frequency sqrt(x^2 + z^2) + amplitude N(p))`, `N` as in `noise`. After
 //! K. Perlin: "An Image Synthesizer", 1985, <https://doi.org/10.1145/325165.325247>, as in MIT 6.837 (2004), assignment 6.
 
 use super::marble::{Layers, ROWS};
@@ -54,6 +54,6 @@ impl Wood {
     pub(super) fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
         let p = at.position;
         let radius = (p.x * p.x + p.z * p.z).sqrt();
-        textures.mix(self.sources, self.layers.weight(radius, at), at.original)
+        textures.mix(self.sources, self.layers.weight_of_a(radius, at), at.original)
     }
 }

@@ -1,0 +1,47 @@
+//! Everything that can be said in a scene: the lists of all kinds, put together.
+
+use crate::{background, camera, film, integrators, lights, materials, sampler, shapes, textures};
+use kirkas_accel::AccelKind;
+use kirkas_scene::{Catalog, Kind, TypeSpec};
+
+const BVH2: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "bvh2",
+    doc: "Binary bounding-volume hierarchy, built by the surface-area heuristic.",
+    params: &[],
+};
+const BRUTE_FORCE: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "brute_force",
+    doc: "Every ray against every primitive: the test of all others.",
+    params: &[],
+};
+
+/// Every accelerator type.
+pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] =
+    &[(&BVH2, AccelKind::Bvh2), (&BRUTE_FORCE, AccelKind::BruteForce)];
+
+/// The catalogue of this build.
+pub fn catalog() -> Catalog {
+    let mut types: Vec<&'static TypeSpec> = vec![&film::SPEC];
+    types.extend(sampler::SAMPLERS);
+    types.extend(integrators::INTEGRATORS);
+    types.extend(ACCELERATORS.iter().map(|a| a.0));
+    types.extend(background::BACKGROUNDS);
+    types.extend(camera::CAMERAS.iter().copied());
+    types.extend(lights::LIGHTS);
+    types.extend(textures::TEXTURES.iter().copied());
+    types.extend(kirkas_optics::SPECS);
+    types.extend(shapes::SHAPES.iter().map(|s| s.spec));
+    types.extend([&shapes::GROUP, &shapes::INSTANCE]);
+    Catalog {
+        types,
+        common: vec![
+            (Kind::Camera, camera::COMMON),
+            (Kind::Light, lights::COMMON),
+            (Kind::Texture, textures::COMMON),
+            (Kind::Material, materials::COMMON),
+            (Kind::Object, shapes::COMMON),
+        ],
+    }
+}

@@ -1,0 +1,342 @@
+//! From a description to a [`Scene`]: names become numbers, groups and instances become placements, shapes become geometry.
+//!
+//! Objects that stand still are put into the world itself. What moves, and what is instanced, becomes an *aggregate* in a
+//! space of its own; instances of instances are placed one by one, each with one composed transform.
+
+use crate::background::Background;
+use crate::camera::Camera;
+use crate::catalog::{ACCELERATORS, catalog};
+use crate::film::filter::Filter;
+use crate::film::{AovSet, FilmLayout, Rect};
+use crate::integrators::whitted::Whitted;
+use crate::integrators::{Integrator, MediumStack};
+use crate::lights::{AreaLight, Lamp, LightEntry, ambient_radiance, area_growth};
+use crate::materials::Material;
+use crate::placement::{PlacedPart, Placement, place_objects};
+use crate::sampler::SamplerKind;
+use crate::scene::{InstanceInfo, PRIMARY, PartInfo, Scene};
+use crate::textures::Textures;
+use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, SceneGeometry};
+use kirkas_geometry::{DVec3, Ray};
+
+use kirkas_scene::validate::validate;
+use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
+
+/// What the caller decides besides the description.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Part of the image to render; `None` = all.
+    pub crop: Option<Rect>,
+    /// AOVs to keep.
+    pub aovs: AovSet,
+}
+
+/// A scene and all that its description says of the picture.
+pub struct Prepared {
+    /// The scene.
+    pub scene: Scene,
+    /// How light is found.
+    pub integrator: Box<dyn Integrator>,
+    /// Pixel filter.
+    pub filter: Filter,
+    /// Which sample points.
+    pub sampler: SamplerKind,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Which of all pictures.
+    pub seed: u64,
+    /// What the film holds.
+    pub film: FilmLayout,
+    /// Display exposure in stops.
+    pub exposure: f32,
+    /// Display tone curve, by name.
+    pub tone: String,
+    /// What is suspicious.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Runs halves of work in parallel where threads exist.
+pub struct Threads;
+
+impl Executor for Threads {
+    fn join(&self, a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+        rayon::join(a, b);
+    }
+}
+
+impl Prepared {
+    /// The renderer of this scene with flocks of `flock` rays.
+    pub fn renderer(&self, flock: usize) -> crate::Renderer<'_> {
+        crate::Renderer {
+            scene: &self.scene,
+            integrator: &*self.integrator,
+            filter: &self.filter,
+            sampler: self.sampler,
+            seed: self.seed,
+            resolution: self.film.size,
+            planes: self.film.planes(),
+            keeps_aovs: !self.film.aovs.is_empty(),
+            flock,
+        }
+    }
+}
+
+/// Compile everything, or say all that is wrong.
+pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options) -> Result<Prepared, Vec<Diagnostic>> {
+    let catalog = catalog();
+    let (errors, mut warnings): (Vec<_>, Vec<_>) =
+        validate(description, &catalog).into_iter().partition(Diagnostic::is_error);
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let singles = Singles::new(description, &catalog);
+    let film = film_layout(&singles.params(Kind::Film), options).map_err(|d| vec![d])?;
+    let scene = compile(description, &catalog, assets, &singles, film.size, &mut warnings)?;
+    let (p, s) = (singles.params(Kind::Film), singles.params(Kind::Sampler));
+    let filter = Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
+    let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
+    Ok(Prepared {
+        integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
+        filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
+        sampler: SamplerKind::from_name(s.spec().name).unwrap_or(SamplerKind::Sobol),
+        samples: s.integer("samples") as u32,
+        seed: s.integer("seed") as u64,
+        film: FilmLayout { groups, ..film },
+        exposure: p.f32("exposure"),
+        tone: p.text("tone").unwrap_or("linear").to_string(),
+        scene,
+        warnings,
+    })
+}
+
+/// The entities of single kinds, made of defaults where nothing is written.
+struct Singles<'a> {
+    catalog: &'a Catalog,
+    entities: Vec<(Kind, Entity)>,
+}
+
+impl<'a> Singles<'a> {
+    fn new(description: &Description, catalog: &'a Catalog) -> Self {
+        let one = |kind: Kind| {
+            let default = || Entity::new("", kind.default_type().unwrap_or_default(), Map::default());
+            (kind, description.single(kind).cloned().unwrap_or_else(default))
+        };
+        Singles { catalog, entities: Kind::ALL.into_iter().filter(|k| k.is_single()).map(one).collect() }
+    }
+
+    fn params(&self, kind: Kind) -> Params<'_> {
+        let entity = &self.entities.iter().find(|e| e.0 == kind).expect("every single kind is there").1;
+        Params::new(entity, kind, self.catalog).expect("the description was validated")
+    }
+}
+
+fn bad_filter(p: &Params) -> Diagnostic {
+    Diagnostic::error("bad-filter", "this filter cannot have this radius")
+        .at(p.span("filter_radius"), "here").help("leave `filter_radius` out for the filter's own")
+}
+
+fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> {
+    let size = (p.integer("width") as u32, p.integer("height") as u32);
+    let whole = Rect { x0: 0, y0: 0, x1: size.0, y1: size.1 };
+    let crop = options.crop.unwrap_or(whole);
+    let fits = crop.x0 < crop.x1 && crop.y0 < crop.y1 && crop.x1 <= size.0 && crop.y1 <= size.1;
+    if !fits {
+        return Err(Diagnostic::error("bad-crop", "the crop window is empty or not inside the image")
+            .help(format!("give X0,Y0,X1,Y1 with 0 <= X0 < X1 <= {} and 0 <= Y0 < Y1 <= {}", size.0, size.1)));
+    }
+    Ok(FilmLayout { size, crop, groups: Vec::new(), aovs: options.aovs })
+}
+
+/// Names of light groups become numbers.
+#[derive(Default)]
+pub(crate) struct Groups(pub Vec<String>);
+
+impl Groups {
+    pub(crate) fn number(&mut self, name: &str) -> u32 {
+        let at = self.0.iter().position(|n| n == name).unwrap_or_else(|| {
+            self.0.push(name.into());
+            self.0.len() - 1
+        });
+        at as u32
+    }
+}
+
+fn compile(
+    d: &Description,
+    catalog: &Catalog,
+    assets: &dyn Assets,
+    singles: &Singles,
+    resolution: (u32, u32),
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Scene, Vec<Diagnostic>> {
+    let one = |e: Diagnostic| vec![e];
+
+    // Textures and materials, by name.
+    let textures = Textures::compile(d, catalog, assets)?;
+    let params = |kind, entity| Params::new(entity, kind, catalog).expect("the description was validated");
+    let materials: Vec<Material> = d
+        .all(Kind::Material)
+        .iter()
+        .filter_map(|e| Material::new(&params(Kind::Material, e), textures.names()))
+        .collect();
+
+    // The camera.
+    let camera = compile_camera(d, catalog, singles)?;
+
+    // Objects: parts in the world, aggregates, and where they are placed.
+    let mut groups = Groups::default();
+    let background_group = groups.number("background");
+    let placement = place_objects(d, catalog, assets, textures, materials, &mut groups)?;
+    let Placement { world, aggregates, instances, materials, textures, object_names } = placement;
+
+    // Lights.
+    let (mut lights, mut ambient) = (Vec::new(), Vec::new());
+    for entity in d.all(Kind::Light) {
+        let p = params(Kind::Light, entity);
+        let group = groups.number(p.text("group").unwrap_or(&entity.name.text));
+        match Lamp::new(&p) {
+            Some(lamp) => lights.push(LightEntry::new(&entity.name.text, group, 1, lamp)),
+            None => ambient.push((ambient_radiance(&p), group)),
+        }
+    }
+    add_area_lights(&world, &aggregates, &instances, &materials, &object_names, &mut lights, warnings);
+
+    // What rays search.
+    let geometry = |parts: &[PlacedPart]| -> Vec<Geometry> {
+        parts
+            .iter()
+            .map(|p| Geometry {
+                shape: p.shape.clone(),
+                opaque: materials[p.info.material as usize].is_opaque(),
+                mask: if p.is_visible { u32::MAX } else { !PRIMARY },
+            })
+            .collect()
+    };
+    let (open, close) = camera.shutter();
+    let scene_geometry = SceneGeometry {
+        world: geometry(&world),
+        aggregates: aggregates.iter().map(|a| geometry(a)).collect(),
+        instances: instances
+            .iter()
+            .map(|i| Instance { aggregate: i.aggregate, world_from_object: i.world_from_part.clone(), mask: u32::MAX })
+            .collect(),
+        shutter: (open, close),
+    };
+    let kind_name = singles.params(Kind::Accelerator).spec().name;
+    let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::Bvh2, |a| a.1);
+    let accel = Accel::build(kind, scene_geometry, &Threads)
+        .map_err(|e| one(Diagnostic::error("bad-geometry", e.to_string()).help("mend the mesh or the object that it names")))?;
+
+    let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
+    let mut scene = Scene {
+        accel,
+        world: infos(world),
+        aggregates: aggregates.into_iter().map(infos).collect(),
+        instances,
+        materials,
+        textures,
+        lights,
+        ambient,
+        background: Background::new(&singles.params(Kind::Background)),
+        background_group,
+        camera,
+        camera_media: MediumStack::EMPTY,
+        camera_gain: 1.0,
+        groups: groups.0,
+        object_names,
+    };
+
+    // Bodies that the camera stands in.
+    let middle = (f64::from(resolution.0) / 2.0, f64::from(resolution.1) / 2.0);
+    let start = scene.camera.ray(&crate::camera::CameraSample { film: middle, lens: (0.5, 0.5), time: open }, resolution);
+    scene.camera_media = bodies_around(&scene, &start);
+    if let Some(body) = scene.ruling(&scene.camera_media) {
+        scene.camera_gain = 1.0 / scene.materials[body as usize].radiance_gain;
+    }
+    Ok(scene)
+}
+
+fn compile_camera(d: &Description, catalog: &Catalog, singles: &Singles) -> Result<Camera, Vec<Diagnostic>> {
+    let film = singles.params(Kind::Film);
+    let named = film.text("camera").and_then(|n| d.find(Kind::Camera, n));
+    let Some(entity) = named.or_else(|| d.all(Kind::Camera).first()) else {
+        return Err(vec![
+            Diagnostic::error("no-camera", "the scene has no camera")
+                .help("add `[cameras.main]` with `type = \"perspective\"`, `position` and `look_at`"),
+        ]);
+    };
+    let p = Params::new(entity, Kind::Camera, catalog).expect("the description was validated");
+    Camera::compile(&p).map_err(|d| vec![d])
+}
+
+/// Every shining part becomes a light, once for each place where it stands.
+fn add_area_lights(
+    world: &[PlacedPart],
+    aggregates: &[Vec<PlacedPart>],
+    instances: &[InstanceInfo],
+    materials: &[Material],
+    object_names: &[String],
+    lights: &mut Vec<LightEntry>,
+    warnings: &mut Vec<Diagnostic>,
+) {
+    let mut add = |part: &PlacedPart, instance: Option<&InstanceInfo>| {
+        let material = instance.and_then(|i| i.material).unwrap_or(part.info.material);
+        let Some(emission) = &materials[material as usize].emission else { return };
+        let object = instance.and_then(|i| i.object).unwrap_or(part.info.object);
+        let mut name = object_names[object as usize].clone();
+        let same = lights.iter().filter(|l| l.name == name || l.name.starts_with(&format!("{name}#"))).count();
+        if same > 0 {
+            name = format!("{name}#{}", same + 1);
+        }
+        let Some(area) = part.info.surface.area() else {
+            warnings.push(
+                Diagnostic::warning("unsampled-light", format!("`{name}` shines, but lights nothing: its shape cannot be sampled"))
+                    .help("use a rectangle, disk, sphere or mesh, not stretched, as the lamp"),
+            );
+            return;
+        };
+        let growth = instance.map_or(1.0, |i| area_growth(&i.world_from_part.at(0.0)));
+        let lamp = AreaLight {
+            surface: part.info.surface.clone(),
+            placement: instance.map(|i| i.world_from_part.clone()),
+            material,
+            area: area * growth,
+        };
+        lights.push(LightEntry::new(&name, part.info.emission_group, emission.samples, Lamp::Area(Box::new(lamp))));
+    };
+    for part in world {
+        add(part, None);
+    }
+    for instance in instances {
+        for part in &aggregates[instance.aggregate] {
+            add(part, Some(instance));
+        }
+    }
+}
+
+/// Bodies that a point is inside of: those whose boundary a ray from there first meets from within, in some direction.
+fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
+    let mut media = MediumStack::EMPTY;
+    if scene.materials.iter().all(|m| m.medium.is_none()) {
+        return media;
+    }
+    let ways = [DVec3::new(0.2917, 0.8713, 0.3947), DVec3::new(0.5113, -0.6139, 0.6015), DVec3::new(-0.8291, 0.2171, -0.5153)];
+    for way in ways {
+        let mut met = Vec::new();
+        let mut ray = Ray { direction: way.as_vec3(), mask: u32::MAX, ..*start };
+        const MOST: usize = 10_000;
+        for _ in 0..MOST {
+            let Some(hit) = scene.accel.closest_hit(&ray, None, 0, &mut Counters::default()) else { break };
+            let s = scene.surface(&ray, &hit);
+            if scene.material(&s).medium.is_some() && !met.contains(&s.material) {
+                met.push(s.material);
+                if !s.is_front && !media.materials().contains(&s.material) {
+                    media = media.entered(s.material);
+                }
+            }
+            ray = Ray { mask: u32::MAX, ..s.ray_towards(way, &ray) };
+        }
+    }
+    media
+}
+

@@ -1,0 +1,88 @@
+//! From sums to an image: means, layers, AOVs.
+
+use super::aov::AOVS;
+use super::{Film, Tile};
+use kirkas_images::{ChannelData, Image, RgbImage, Window};
+
+/// How floats are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// 16 bits.
+    Half,
+    /// 32 bits.
+    Float,
+}
+
+impl Film {
+    /// The beauty image of the crop.
+    pub fn to_rgb(&self) -> RgbImage {
+        let c = self.layout.crop;
+        let mut image = RgbImage { width: c.width(), height: c.height(), pixels: vec![[0.0; 3]; c.area()] };
+        for (x, y, tile, i) in self.pixels() {
+            image.pixels[self.index(x, y)] = tile.mean(i);
+        }
+        image
+    }
+
+    /// All layers: beauty, light groups, AOVs. AOVs that are numbers stay 32 bits wide.
+    pub fn to_image(&self, depth: Depth) -> Image {
+        let c = self.layout.crop;
+        let window = |x: u32, y: u32, width: u32, height: u32| Window { x: x as i32, y: y as i32, width, height };
+        let mut image = Image {
+            data: window(c.x0, c.y0, c.width(), c.height()),
+            display: window(0, 0, self.layout.size.0, self.layout.size.1),
+            ..Image::default()
+        };
+        let floats = |values: Vec<f32>| match depth {
+            Depth::Half => ChannelData::F16(values),
+            Depth::Float => ChannelData::F32(values),
+        };
+        for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+            image.push(name, floats(self.plane(|t, i| t.mean(i)[c])));
+            for (g, group) in self.layout.groups.iter().enumerate() {
+                image.push(format!("group.{}.{name}", layer_name(group)), floats(self.plane(|t, i| t.plane_mean(i, g)[c])));
+            }
+        }
+        for (name, channels, _) in AOVS.iter().filter(|a| self.layout.aovs.has(a.0)) {
+            for (c, channel) in channels.iter().enumerate() {
+                image.push(format!("{name}.{channel}"), self.aov_channel(name, c));
+            }
+        }
+        image
+    }
+
+    /// Channel `c` of an AOV.
+    pub fn aov_channel(&self, name: &str, c: usize) -> ChannelData {
+        let value = |k: usize| self.plane(move |t, i| t.aovs.as_ref().map_or(0.0, |a| a.mean(i, k)));
+        let id = |pick: fn(&super::aov::Ids) -> u32| self.plane(move |t, i| t.aovs.as_ref().map_or(0, |a| pick(&a.ids[i])));
+        match name {
+            "depth" => ChannelData::F32(value(0)),
+            "normals" => ChannelData::F32(value(1 + c)),
+            "albedo" => ChannelData::F32(value(4 + c)),
+            "position" => ChannelData::F32(value(7 + c)),
+            "object_id" => ChannelData::U32(id(|i| i.object)),
+            "material_id" => ChannelData::U32(id(|i| i.material)),
+            "sample_count" => ChannelData::U32(self.plane(|t, i| t.counts[i].taken - t.counts[i].invalid)),
+            _ => ChannelData::F32(self.plane(|t, i| t.variance_of_mean(i)[c])),
+        }
+    }
+
+    /// One value per pixel of the crop, rows from the top.
+    pub(crate) fn plane<T: Clone + Default>(&self, value: impl Fn(&Tile, usize) -> T) -> Vec<T> {
+        let mut out = vec![T::default(); self.layout.crop.area()];
+        for (x, y, tile, i) in self.pixels() {
+            out[self.index(x, y)] = value(tile, i);
+        }
+        out
+    }
+
+    fn index(&self, x: u32, y: u32) -> usize {
+        let c = self.layout.crop;
+        (y - c.y0) as usize * c.width() as usize + (x - c.x0) as usize
+    }
+}
+
+/// Dots separate layers in EXR, so names keep none.
+pub fn layer_name(group: &str) -> String {
+    group.replace('.', "_")
+}

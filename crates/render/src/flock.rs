@@ -1,0 +1,273 @@
+//! The driver: moves many paths at once through a tile, one step each per round, so that the kernel always gets batches.
+//!
+//! Nothing here changes what a sample is: flocks of any size give the same bits, because every sample adds integers.
+
+use crate::film::{AovSample, FinishedSample, Tile, fixed};
+use crate::integrators::{Integrator, PathState, RayKind, ShadowRay, StepOutput};
+use crate::observe::{Observer, SampleId};
+use crate::render::Renderer;
+use crate::sampler::Sampler;
+use crate::scene::{AlphaFilter, SurfaceHit};
+use crate::statistics::Statistics;
+use kirkas_accel::Hit;
+use kirkas_geometry::Ray;
+use kirkas_geometry::hash::combine;
+use kirkas_optics::{Lanes, Light};
+
+/// One sample under way.
+struct Slot {
+    id: SampleId,
+    pixel: usize,
+    sampler: Sampler,
+    /// The filter's weight.
+    weight: f32,
+    /// Rays that may still bring light.
+    pending: u32,
+    sums: Vec<[i128; 3]>,
+    is_invalid: bool,
+    aov: Option<AovSample>,
+}
+
+/// A path and the sample it belongs to.
+struct Traveller {
+    path: PathState,
+    slot: usize,
+}
+
+/// The working state of one thread.
+pub(crate) struct Flock<'a, O: Observer> {
+    renderer: &'a Renderer<'a>,
+    observer: &'a mut O,
+    size: usize,
+    slots: Vec<Slot>,
+    free: Vec<usize>,
+    /// Paths that wait, the youngest on top: memory stays bounded by depth and branching.
+    waiting: Vec<Traveller>,
+    active: Vec<Traveller>,
+    shadows: Vec<(ShadowRay, usize)>,
+    rays: Vec<Ray>,
+    keys: Vec<u64>,
+    hits: Vec<Option<Hit>>,
+    blocked: Vec<bool>,
+    out: StepOutput,
+    statistics: Statistics,
+}
+
+impl<'a, O: Observer> Flock<'a, O> {
+    pub(crate) fn new(renderer: &'a Renderer<'a>, size: usize, observer: &'a mut O) -> Self {
+        Flock {
+            renderer,
+            observer,
+            size: size.max(1),
+            slots: Vec::new(),
+            free: Vec::new(),
+            waiting: Vec::new(),
+            active: Vec::new(),
+            shadows: Vec::new(),
+            rays: Vec::new(),
+            keys: Vec::new(),
+            hits: Vec::new(),
+            blocked: Vec::new(),
+            out: StepOutput::default(),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Take the given samples of the tile.
+    pub(crate) fn run(mut self, tile: &mut Tile, samples: impl Iterator<Item = (usize, SampleId)>) -> Statistics {
+        let mut samples = samples;
+        loop {
+            // Gather a flock: branches first, then new camera rays.
+            self.active.clear();
+            while self.active.len() < self.size {
+                if let Some(t) = self.waiting.pop() {
+                    self.active.push(t);
+                } else if let Some((pixel, id)) = samples.next() {
+                    self.launch(pixel, id);
+                } else {
+                    break;
+                }
+            }
+            if self.active.is_empty() {
+                return self.statistics;
+            }
+
+            // Find what they hit.
+            self.trace_active();
+
+            // Step each path.
+            let active = std::mem::take(&mut self.active);
+            for (i, t) in active.iter().enumerate() {
+                self.step(t, self.hits[i]);
+            }
+            self.active = active;
+
+            // Ask whether the lights are seen.
+            self.trace_shadows();
+
+            // Put finished samples on the film.
+            for i in 0..self.active.len() {
+                self.finish(self.active[i].slot, tile);
+            }
+        }
+    }
+
+    fn launch(&mut self, pixel: usize, id: SampleId) {
+        let sampler = self.renderer.sampler(id);
+        let start = self.renderer.camera_path(&sampler, id);
+        let planes = self.renderer.planes;
+        let slot = Slot {
+            id,
+            pixel,
+            sampler,
+            weight: start.weight,
+            pending: 1,
+            sums: vec![[0; 3]; planes],
+            is_invalid: false,
+            aov: None,
+        };
+        let index = match self.free.pop() {
+            Some(i) => {
+                self.slots[i] = slot;
+                i
+            }
+            None => {
+                self.slots.push(slot);
+                self.slots.len() - 1
+            }
+        };
+        self.statistics.samples += 1;
+        self.statistics.lens_samples += u64::from(start.uses_lens);
+        self.statistics.time_samples += u64::from(start.uses_time);
+        self.active.push(Traveller { path: start.path, slot: index });
+    }
+
+    fn trace_active(&mut self) {
+        self.rays.clear();
+        self.keys.clear();
+        for t in &self.active {
+            let slot = &self.slots[t.slot];
+            self.observer.ray(slot.id, &t.path);
+            self.rays.push(t.path.ray);
+            self.keys.push(combine(slot.sampler.key(), t.path.branch));
+            match t.path.kind {
+                RayKind::Camera => self.statistics.camera_rays += 1,
+                RayKind::Reflected => self.statistics.reflected_rays += 1,
+                RayKind::Refracted => self.statistics.refracted_rays += 1,
+                RayKind::Glossy => self.statistics.glossy_rays += 1,
+            }
+        }
+        self.find_hits();
+        self.statistics.hits += self.hits.iter().flatten().count() as u64;
+    }
+
+    fn find_hits(&mut self) {
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        let filter = AlphaFilter { scene: self.renderer.scene, keys: &self.keys };
+        let search = &mut self.statistics.search;
+        self.renderer.scene.accel.closest_hits(&self.rays, Some(&filter), &mut self.hits, search);
+    }
+
+    fn step(&mut self, t: &Traveller, hit: Option<Hit>) {
+        let scene = self.renderer.scene;
+        let surface: Option<SurfaceHit> = hit.map(|h| scene.surface(&t.path.ray, &h));
+        let slot = &mut self.slots[t.slot];
+        if let Some(s) = &surface {
+            self.observer.hit(slot.id, &t.path, s);
+        }
+        if self.renderer.keeps_aovs && t.path.kind == RayKind::Camera && slot.aov.is_none() {
+            slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(&t.path, s)));
+        }
+        self.out.clear();
+        self.renderer.integrator.step(scene, &t.path, &slot.sampler, surface.as_ref(), &mut self.out);
+        for (light, group) in &self.out.contributions {
+            add(self.renderer, slot, self.observer, t.path.branch, *light, *group);
+        }
+        let slot = &mut self.slots[t.slot];
+        slot.pending += (self.out.paths.len() + self.out.shadow_rays.len()) as u32;
+        slot.pending -= 1;
+        if let Some(why) = self.out.end {
+            self.observer.end(slot.id, t.path.branch, why);
+        }
+        self.shadows.extend(self.out.shadow_rays.drain(..).map(|s| (s, t.slot)));
+        self.waiting.extend(self.out.paths.drain(..).map(|path| Traveller { path, slot: t.slot }));
+    }
+
+    fn trace_shadows(&mut self) {
+        let scene = self.renderer.scene;
+        let mut shadows = std::mem::take(&mut self.shadows);
+        while !shadows.is_empty() {
+            self.rays.clear();
+            self.keys.clear();
+            for (s, slot) in &shadows {
+                self.rays.push(s.ray);
+                self.keys.push(combine(self.slots[*slot].sampler.key(), s.branch));
+            }
+            self.statistics.shadow_rays += shadows.len() as u64;
+
+            // Plain ones want a yes or no; filtered ones walk from surface to surface.
+            if shadows.iter().any(|(s, _)| s.is_filtered) {
+                self.find_hits();
+                let mut next = Vec::new();
+                for (i, (s, slot)) in shadows.drain(..).enumerate() {
+                    match self.hits[i] {
+                        None => self.answer(&s, slot, false),
+                        Some(hit) => match scene.weakened(&s, &hit) {
+                            Some(on) => next.push((on, slot)),
+                            None => self.answer(&s, slot, true),
+                        },
+                    }
+                }
+                shadows = next;
+            } else {
+                self.blocked.clear();
+                self.blocked.resize(self.rays.len(), false);
+                let filter = AlphaFilter { scene, keys: &self.keys };
+                let search = &mut self.statistics.search;
+                scene.accel.any_hits(&self.rays, Some(&filter), &mut self.blocked, search);
+                for (i, (s, slot)) in shadows.drain(..).enumerate() {
+                    self.answer(&s, slot, self.blocked[i]);
+                }
+            }
+        }
+        self.shadows = shadows;
+    }
+
+    fn answer(&mut self, s: &ShadowRay, slot: usize, blocked: bool) {
+        let slot = &mut self.slots[slot];
+        slot.pending -= 1;
+        self.observer.shadow(slot.id, s, blocked);
+        if !blocked {
+            add(self.renderer, slot, self.observer, s.branch, s.light, s.group);
+        }
+    }
+
+    fn finish(&mut self, slot_index: usize, tile: &mut Tile) {
+        let slot = &mut self.slots[slot_index];
+        if slot.pending > 0 || slot.pixel == DONE {
+            return;
+        }
+        let aov = slot.aov.unwrap_or_default();
+        let sample = FinishedSample { sums: &slot.sums, is_invalid: slot.is_invalid, aov };
+        tile.add(slot.pixel, slot.id, &sample);
+        slot.pixel = DONE;
+        self.free.push(slot_index);
+    }
+}
+
+/// `Slot::pixel` of a slot whose sample is on the film already.
+const DONE: usize = usize::MAX;
+
+/// Round a contribution once and add it to its sample.
+fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64, light: Light, group: u32) {
+    let rgb = Lanes::RGB.to_film(light);
+    let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
+    let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
+        slot.is_invalid = true;
+        return;
+    };
+    let sum = &mut slot.sums[if r.planes > 1 { group as usize } else { 0 }];
+    *sum = [sum[0] + red, sum[1] + green, sum[2] + blue];
+    observer.contribution(slot.id, branch, group, light, [red, green, blue]);
+}

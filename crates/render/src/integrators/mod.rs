@@ -1,0 +1,131 @@
+//! Integrators: how light is found. An integrator is a *step*: given a path and what it hit, which light reaches the pixel,
+//! and which rays go on. One driver moves the rays in flocks, so that the kernel always has many in flight.
+
+pub mod whitted;
+
+use crate::sampler::Sampler;
+use crate::scene::{Scene, SurfaceHit};
+use kirkas_geometry::Ray;
+use kirkas_optics::Light;
+use kirkas_scene::TypeSpec;
+
+/// Every integrator type.
+pub const INTEGRATORS: &[&TypeSpec] = &[&whitted::SPEC];
+
+/// Closed bodies that a path is inside of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MediumStack {
+    materials: [u32; MediumStack::MOST],
+    len: u8,
+}
+
+impl MediumStack {
+    /// Bodies that may overlap at one point; more are not told apart.
+    pub const MOST: usize = 12;
+    /// In none.
+    pub const EMPTY: Self = MediumStack { materials: [0; Self::MOST], len: 0 };
+
+    /// Materials of the bodies, in the order in which they were entered.
+    pub fn materials(&self) -> &[u32] {
+        &self.materials[..usize::from(self.len)]
+    }
+
+    /// This with one more body.
+    pub fn entered(mut self, material: u32) -> Self {
+        if usize::from(self.len) < Self::MOST {
+            self.materials[usize::from(self.len)] = material;
+            self.len += 1;
+        }
+        self
+    }
+
+    /// This without the body of `material` that was entered last; unchanged if there is none.
+    pub fn left(mut self, material: u32) -> Self {
+        if let Some(i) = self.materials().iter().rposition(|&m| m == material) {
+            self.materials.copy_within(i + 1..usize::from(self.len), i);
+            self.len -= 1;
+        }
+        self
+    }
+}
+
+/// What a ray of the tree is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayKind {
+    /// From the camera.
+    Camera,
+    /// Mirrored.
+    Reflected,
+    /// Refracted.
+    Refracted,
+    /// One of several around a mirrored or refracted direction.
+    Glossy,
+}
+
+/// A path under way: one ray of the tree.
+#[derive(Clone, Copy, Debug)]
+pub struct PathState {
+    /// The ray to trace next.
+    pub ray: Ray,
+    /// What light found at its end is multiplied by.
+    pub throughput: Light,
+    /// Bounces so far.
+    pub depth: u32,
+    /// What the ray is.
+    pub kind: RayKind,
+    /// Names the place in the ray tree: a hash of all choices since the camera.
+    pub branch: u64,
+    /// Bodies it is inside of.
+    pub media: MediumStack,
+    /// Surfaces passed without an event (an overlapped boundary) since the last bounce.
+    pub passed: u32,
+}
+
+/// A ray that asks whether light arrives.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowRay {
+    /// From the surface to the light.
+    pub ray: Ray,
+    /// What is added to the pixel if nothing blocks it.
+    pub light: Light,
+    /// Light group.
+    pub group: u32,
+    /// Branch of the path that asks.
+    pub branch: u64,
+    /// The light, by number.
+    pub lamp: u32,
+    /// Transparent surfaces weaken it instead of blocking.
+    pub is_filtered: bool,
+    /// Surfaces it has been weakened by.
+    pub passed: u32,
+}
+
+/// Where a step puts what it found.
+#[derive(Default)]
+pub struct StepOutput {
+    /// Light that reaches the pixel for certain: `(light, group)`.
+    pub contributions: Vec<(Light, u32)>,
+    /// Light that reaches it unless something is in the way.
+    pub shadow_rays: Vec<ShadowRay>,
+    /// The path's continuations.
+    pub paths: Vec<PathState>,
+    /// Set when the path goes no further.
+    pub end: Option<crate::observe::PathEnd>,
+}
+
+impl StepOutput {
+    /// Forget everything.
+    pub fn clear(&mut self) {
+        self.contributions.clear();
+        self.shadow_rays.clear();
+        self.paths.clear();
+        self.end = None;
+    }
+}
+
+/// One step of an integrator. Pure: the same arguments give the same output.
+pub trait Integrator: Sync {
+    /// `hit` is `None` where the ray left the scene.
+    fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput);
+}
+

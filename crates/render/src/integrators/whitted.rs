@@ -1,0 +1,313 @@
+//! Recursive ray tracing as Whitted (1980) has it, with the distributed effects of Cook, Porter & Carpenter (1984): ambient
+//! term; per light a shadow ray and local shading; mirror and refraction rays; several rays for glossy surfaces and area lights.
+//! Light that bounces between diffuse surfaces is not followed: the ambient light stands for it.
+//!
+//! # Parameters
+//! `max_depth` bounces; `min_contribution` below which a ray is not sent; `shadows`; `shade_back`; `glossy_samples`.
+//!
+//! # Example
+//! ```toml
+//! [integrator]
+//! type = "whitted"
+//! max_depth = 5
+//! min_contribution = 0.01
+//! shadows = "opaque"
+//! ```
+//!
+//! # Limits
+//! No diffuse interreflection, no caustics: a glass ball casts a full shadow, or with `shadows = "transparent"` one that is
+//! tinted but not focused. Where depth or contribution ends the tree, light is lost.
+//!
+//! # References
+//! Whitted 1980, "An Improved Illumination Model for Shaded Display"; Cook, Porter & Carpenter 1984, "Distributed Ray
+//! Tracing"; Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
+
+use super::{Integrator, PathState, RayKind, ShadowRay, StepOutput};
+use crate::lights::Lamp;
+use crate::observe::PathEnd;
+use crate::sampler::Sampler;
+use crate::scene::{Scene, SurfaceHit};
+use kirkas_geometry::hash::{combine, of_name};
+use kirkas_geometry::{DVec3, Vec3};
+use kirkas_optics::medium::transmittance;
+use kirkas_optics::{Bsdf, Interface, Lanes, Light, Lobe, LobeSet, Mode};
+use kirkas_scene::spec::{NOT_NEGATIVE, UNIT};
+use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+
+/// The table.
+pub const SPEC: TypeSpec = TypeSpec {
+    kind: Kind::Integrator,
+    name: "whitted",
+    doc: "Recursive ray tracing with distributed rays.",
+    params: &[
+        ParamSpec::integer("max_depth", 8, (0.0, 1000.0), "Bounces; 0 sends no reflected or refracted ray.").unit("bounces"),
+        ParamSpec::number("min_contribution", 0.001, "A ray that can add less than this share is not sent.").range(UNIT),
+        ParamSpec::choice(
+            "shadows",
+            &["opaque", "transparent", "none"],
+            "`opaque`: any surface blocks; `transparent`: clear ones tint, without bending; `none`: no shadow rays.",
+        ),
+        ParamSpec::bool("shade_back", true, "Shade surfaces seen from behind as if their normal pointed to the viewer."),
+        ParamSpec::integer("glossy_samples", 4, (1.0, 65_536.0), "Rays per glossy lobe at the first bounce, 1 deeper.")
+            .range((1.0, 65_536.0)),
+        ParamSpec::number("ambient", 1.0, "Scales all ambient light.").range(NOT_NEGATIVE),
+    ],
+};
+
+/// What shadow rays do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadows {
+    /// Any surface blocks.
+    Opaque,
+    /// Clear surfaces tint.
+    Transparent,
+    /// There are none.
+    None,
+}
+
+/// The integrator.
+#[derive(Clone, Debug)]
+pub struct Whitted {
+    max_depth: u32,
+    min_contribution: f32,
+    shadows: Shadows,
+    shade_back: bool,
+    glossy_samples: u32,
+    ambient: f32,
+}
+
+impl Whitted {
+    /// From its parameters.
+    pub fn new(p: &Params) -> Self {
+        Whitted {
+            max_depth: p.integer("max_depth") as u32,
+            min_contribution: p.f32("min_contribution"),
+            shadows: match p.text("shadows") {
+                Some("none") => Shadows::None,
+                Some("transparent") => Shadows::Transparent,
+                _ => Shadows::Opaque,
+            },
+            shade_back: p.bool("shade_back"),
+            glossy_samples: p.integer("glossy_samples") as u32,
+            ambient: p.f32("ambient"),
+        }
+    }
+}
+
+impl Integrator for Whitted {
+    fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput) {
+        let mut path = *path;
+
+        // Weaken the path by the body it went through.
+        if let (Some(hit), Some(body)) = (hit, scene.body_of(&path.media)) {
+            let absorption = Lanes::RGB.unbounded(body.absorption);
+            let length = path.ray.direction.length();
+            path.throughput *= transmittance(absorption, hit.t * length);
+        }
+
+        // What left the scene sees the background.
+        let Some(hit) = hit else {
+            let sky = scene.background.radiance(path.ray.direction);
+            out.contributions.push((path.throughput * sky, scene.background_group));
+            out.end = Some(PathEnd::Escaped);
+            return;
+        };
+
+        // Pass boundaries that another body covers.
+        let material = scene.material(hit);
+        let entering = hit.is_front;
+        if material.medium.is_some() && scene.is_covered(&path.media, hit.material, entering) {
+            let media = if entering { path.media.entered(hit.material) } else { path.media.left(hit.material) };
+            if path.passed < MOST_PASSED {
+                let ray = hit.ray_towards(path.ray.direction.as_dvec3(), &path.ray);
+                out.paths.push(PathState { ray, media, passed: path.passed + 1, ..path });
+            }
+            return;
+        }
+
+        // A surface that shines is seen.
+        let emitted = scene.emitted(hit);
+        if !emitted.is_black() {
+            out.contributions.push((path.throughput * emitted, hit.emission_group));
+        }
+
+        let (bsdf, eta_scale) = self.bsdf(scene, &path, hit);
+        let wo_world = -path.ray.direction.normalize();
+        let mut wo = hit.frame.to_local(wo_world);
+        let is_boundary = material.medium.is_some();
+
+        self.add_ambient(scene, &path, &bsdf, out);
+        if !self.shade_back && wo.z < 0.0 && !is_boundary {
+            // The course's rule: the normal stays as modelled, whatever side is seen.
+            wo.z = -wo.z;
+        }
+        self.light_directly(scene, &path, sampler, hit, &bsdf, wo, out);
+
+        // Follow mirror and refraction rays.
+        if bsdf.lobes().intersects(LobeSet::DELTA | bsdf.traced_lobes()) {
+            let wo = hit.frame.to_local(wo_world);
+            self.branch(&path, sampler, hit, &bsdf, wo, is_boundary, eta_scale, out);
+        } else {
+            out.end = Some(PathEnd::Absorbed);
+        }
+    }
+}
+
+/// Covered boundaries passed in a row before a path is given up.
+const MOST_PASSED: u32 = 256;
+
+impl Whitted {
+    /// The surface's scattering, with the bodies on both its sides, and 1 (a place for radiance scaling by index).
+    fn bsdf(&self, scene: &Scene, path: &PathState, hit: &SurfaceHit) -> (Bsdf, f32) {
+        let material = scene.material(hit);
+        let interface = match material.medium {
+            Some(inside) => {
+                let others = path.media.left(hit.material);
+                let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
+                Interface { eta_above: outside, eta_below: inside.ior }
+            }
+            None => Interface { eta_above: 1.0, eta_below: 1.0 },
+        };
+        (scene.bsdf(hit, interface), 1.0)
+    }
+
+    fn add_ambient(&self, scene: &Scene, path: &PathState, bsdf: &Bsdf, out: &mut StepOutput) {
+        let albedo = bsdf.ambient();
+        if albedo.is_black() || self.ambient == 0.0 {
+            return;
+        }
+        for (light, group) in &scene.ambient {
+            out.contributions.push((path.throughput * albedo * *light * self.ambient, *group));
+        }
+    }
+
+    /// For every light: shadow rays and local shading.
+    fn light_directly(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        hit: &SurfaceHit,
+        bsdf: &Bsdf,
+        wo: Vec3,
+        out: &mut StepOutput,
+    ) {
+        let shaded = bsdf.lobes() & LobeSet::NON_DELTA;
+        if shaded.is_empty() {
+            return;
+        }
+        let traced = if path.depth < self.max_depth { bsdf.traced_lobes() } else { LobeSet::NONE };
+        for (number, light) in scene.lights.iter().enumerate() {
+            // A glossy surface finds area lights with its own rays.
+            let lobes = if matches!(light.lamp, Lamp::Area(_)) { shaded.without(traced) } else { shaded };
+            if lobes.is_empty() {
+                continue;
+            }
+            let count = if path.depth == 0 { light.samples } else { light.samples.min(1) };
+            let purpose = combine(path.branch, light.hash);
+            for i in 0..count {
+                let u = sampler.pair_of(purpose, i, count);
+                let Some(s) = scene.sample_light(light, hit.position, f64::from(path.ray.time), u) else { continue };
+                let wi = hit.frame.to_local(s.direction.as_vec3());
+                let f = bsdf.eval(wo, wi, lobes, Mode::Radiance);
+                let weight = path.throughput * f * s.light * (wi.z.abs() / count as f32);
+                // Light that a shading normal would let through an opaque surface is not let through.
+                let side = s.direction.dot(hit.normal);
+                if weight.is_black() || side == 0.0 || (side > 0.0) != (wi.z > 0.0) {
+                    continue;
+                }
+                if self.shadows == Shadows::None {
+                    out.contributions.push((weight, light.group));
+                    continue;
+                }
+                out.shadow_rays.push(ShadowRay {
+                    ray: hit.shadow_ray(&s, &path.ray),
+                    light: weight,
+                    group: light.group,
+                    branch: path.branch,
+                    lamp: number as u32,
+                    is_filtered: self.shadows == Shadows::Transparent,
+                    passed: 0,
+                });
+            }
+        }
+    }
+
+    /// Send the rays of the tree.
+    fn branch(
+        &self,
+        path: &PathState,
+        sampler: &Sampler,
+        hit: &SurfaceHit,
+        bsdf: &Bsdf,
+        wo: Vec3,
+        is_boundary: bool,
+        scale: f32,
+        out: &mut StepOutput,
+    ) {
+        if path.depth >= self.max_depth {
+            out.end = Some(PathEnd::Depth);
+            return;
+        }
+        let before = out.paths.len();
+        for s in bsdf.delta_branches(wo, Mode::Radiance) {
+            let kind = if s.lobe.is_transmission() { RayKind::Refracted } else { RayKind::Reflected };
+            self.send(path, hit, s.wi, s.lobe, s.weight() * scale, kind, 0, is_boundary, out);
+        }
+        let count = if path.depth == 0 { self.glossy_samples } else { 1 };
+        for lobe in bsdf.traced_lobes().iter() {
+            let purpose = combine(path.branch, combine(GLOSSY, lobe as u64));
+            for i in 0..count {
+                let u = sampler.pair_of(purpose, i, count);
+                if let Some(s) = bsdf.sample(wo, 0.0, u, LobeSet::of(lobe), Mode::Radiance) {
+                    let weight = s.weight() * (scale / count as f32);
+                    self.send(path, hit, s.wi, s.lobe, weight, RayKind::Glossy, i, is_boundary, out);
+                }
+            }
+        }
+        if out.paths.len() == before {
+            out.end = Some(PathEnd::Contribution);
+        }
+    }
+
+    fn send(
+        &self,
+        path: &PathState,
+        hit: &SurfaceHit,
+        wi: Vec3,
+        lobe: Lobe,
+        weight: Light,
+        kind: RayKind,
+        number: u32,
+        is_boundary: bool,
+        out: &mut StepOutput,
+    ) {
+        let throughput = path.throughput * weight;
+        if throughput.max_component() < self.min_contribution || throughput.is_black() {
+            return;
+        }
+        let direction: DVec3 = hit.frame.to_world(wi).as_dvec3().normalize();
+        // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.
+        let goes_up = direction.dot(hit.normal) > 0.0;
+        let from_above = path.ray.direction.as_dvec3().dot(hit.normal) < 0.0;
+        if (goes_up == from_above) == lobe.is_transmission() {
+            return;
+        }
+        let media = match (lobe.is_transmission() && is_boundary, goes_up) {
+            (true, false) => path.media.entered(hit.material),
+            (true, true) => path.media.left(hit.material),
+            _ => path.media,
+        };
+        out.paths.push(PathState {
+            ray: hit.ray_towards(direction, &path.ray),
+            throughput,
+            depth: path.depth + 1,
+            kind,
+            branch: combine(path.branch, u64::from(number) << 8 | lobe as u64),
+            media,
+            passed: 0,
+        });
+    }
+}
+
+const GLOSSY: u64 = of_name("glossy");

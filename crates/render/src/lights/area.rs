@@ -1,0 +1,97 @@
+//! Shining surfaces as lights: any shape with an `emitter` material. Sampled by solid angle where the shape knows how
+//! (spheres), else by area.
+
+use super::{LightSample, Target};
+use crate::materials::Material;
+use crate::shapes::{AreaSample, Surface};
+use crate::textures::{TexturePoint, Textures};
+use kirkas_geometry::rounding::gamma;
+use kirkas_geometry::transform::transform_normal;
+use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// One shining part.
+#[derive(Clone)]
+pub struct AreaLight {
+    /// Its shape.
+    pub surface: Arc<dyn Surface>,
+    /// Where it stands, if it is not in the world itself.
+    pub placement: Option<AnimatedTransform>,
+    /// Index into `Scene::materials`.
+    pub material: u32,
+    /// Total area as placed, scene units squared.
+    pub area: f64,
+}
+
+/// By which factor a map that keeps shapes (a similarity) grows areas; for others, the same from their volume growth.
+pub fn area_growth(m: &DAffine3) -> f64 {
+    let s = kirkas_geometry::elementary::cbrt(m.matrix3.determinant().abs());
+    s * s
+}
+
+impl AreaLight {
+    /// A point of the surface as seen from `from`.
+    pub fn sample(
+        &self,
+        materials: &[Material],
+        textures: &Textures,
+        from: DVec3,
+        time: f64,
+        u: (f32, f32),
+    ) -> Option<LightSample> {
+        let emission = materials[self.material as usize].emission.as_ref()?;
+        let map = self.placement.as_ref().map(|p| p.at(time));
+        let (s, per_solid_angle) = self.choose(map.as_ref(), from, u)?;
+        let to_light = s.position - from;
+        let r2 = to_light.length_squared();
+        if !(r2 > 0.0) {
+            return None;
+        }
+        let direction = to_light / r2.sqrt();
+        let facing = -direction.dot(s.normal);
+        let cosine = if emission.two_sided { facing.abs() } else { facing };
+        if cosine <= 0.0 {
+            return None;
+        }
+        let pdf = per_solid_angle.unwrap_or(s.pdf_area * r2 / cosine);
+        let at = TexturePoint { uv: s.uv, object_position: s.position, world_position: s.position };
+        let radiance = emission.radiance(textures, &at, 1.0 / (PI * self.area));
+        let target = Target {
+            position: s.position,
+            error: s.position.abs() * f64::from(gamma(4)) + from.abs() * f64::from(gamma(2)),
+            normal: s.normal,
+        };
+        (pdf > 0.0 && pdf.is_finite())
+            .then(|| LightSample { direction, target: Some(target), light: radiance * (1.0 / pdf) as f32 })
+    }
+
+    /// A point in the world with its density by area, and by solid angle if the shape sampled that.
+    fn choose(&self, map: Option<&DAffine3>, from: DVec3, u: (f32, f32)) -> Option<(AreaSample, Option<f64>)> {
+        let Some(m) = map else {
+            return match self.surface.sample_toward(from, u) {
+                Some((s, pdf)) => Some((s, Some(pdf))),
+                None => self.surface.sample_area(u).map(|s| (s, None)),
+            };
+        };
+        let inverse = m.inverse();
+        let (mut s, pdf) = match self.surface.sample_toward(inverse.transform_point3(from), u) {
+            // Solid angles survive turning and even scaling only.
+            Some((s, pdf)) if is_similarity(m) => (s, Some(pdf)),
+            _ => (self.surface.sample_area(u)?, None),
+        };
+        let normal = transform_normal(&inverse, s.normal);
+        // An area element grows by |det M| |M^-T n|.
+        s.pdf_area /= m.matrix3.determinant().abs() * normal.length();
+        s.normal = normal.normalize();
+        s.position = m.transform_point3(s.position);
+        Some((s, pdf))
+    }
+}
+
+fn is_similarity(m: &DAffine3) -> bool {
+    let (x, y, z) = (m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis);
+    let s = x.length_squared();
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * s;
+    near(y.length_squared(), s) && near(z.length_squared(), s) && near(x.dot(y), 0.0) && near(y.dot(z), 0.0) && near(z.dot(x), 0.0)
+}

@@ -1,0 +1,65 @@
+//! A directional light: infinitely far away, parallel, without falloff; the sun, nearly.
+//!
+//! # Parameters
+//! `direction` in which the light travels; `intensity`, `color`, `unit`.
+//!
+//! # Example
+//! ```toml
+//! [lights.sun]
+//! type = "directional"
+//! direction = [-1, -2, -1]
+//! intensity = 0.9
+//! ```
+//!
+//! # Limits
+//! Shadows are hard; the real sun is half a degree wide.
+//!
+//! # References
+//! Irradiance on a surface: E cos(theta).
+
+use super::point::COLOR;
+use super::{LightSample, units};
+use kirkas_geometry::DVec3;
+use kirkas_optics::Light;
+use kirkas_scene::spec::NOT_NEGATIVE;
+use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+
+/// The table.
+pub const SPEC: TypeSpec = TypeSpec {
+    kind: Kind::Light,
+    name: "directional",
+    doc: "Parallel light from infinitely far.",
+    params: &[
+        ParamSpec::vector("direction", [0.0, -1.0, 0.0], "The way the light travels."),
+        ParamSpec::number("intensity", 1.0, "How strong, in `unit`.").range(NOT_NEGATIVE),
+        COLOR,
+        ParamSpec::choice(
+            "unit",
+            &["plain", "lux", "W/m2"],
+            "`plain`: a white surface facing the light looks as bright as the number.",
+        ),
+    ],
+};
+
+/// The light.
+#[derive(Clone)]
+pub struct DirectionalLight {
+    towards: DVec3,
+    irradiance: Light,
+}
+
+impl DirectionalLight {
+    /// From its parameters.
+    pub fn new(p: &Params) -> Self {
+        let unit = p.text("unit").unwrap_or("plain");
+        DirectionalLight {
+            towards: -DVec3::from_array(p.vector("direction")).normalize_or(DVec3::NEG_Y),
+            irradiance: units::light(p.number("intensity"), p.color("color"), unit, 1.0),
+        }
+    }
+
+    /// What arrives anywhere.
+    pub fn sample(&self) -> Option<LightSample> {
+        Some(LightSample { direction: self.towards, target: None, light: self.irradiance })
+    }
+}

@@ -1,0 +1,115 @@
+//! Lights: from where, and how much of it, light arrives at a point.
+//!
+//! Contract: a sample's `light` is what the cosine and the BSDF are multiplied by: for points, spots and directions the
+//! irradiance on a surface facing the light; for areas the radiance over the density per solid angle.
+
+mod ambient;
+mod area;
+mod directional;
+mod point;
+mod spot;
+pub mod units;
+
+pub use area::{AreaLight, area_growth};
+
+use crate::materials::Material;
+use crate::textures::Textures;
+use kirkas_geometry::DVec3;
+use kirkas_geometry::hash::of_name;
+use kirkas_optics::Light;
+use kirkas_scene::{Fallback, ParamSpec, ParamType, Params, TypeSpec};
+
+/// Every light type.
+pub const LIGHTS: &[&TypeSpec] = &[&point::SPEC, &spot::SPEC, &directional::SPEC, &ambient::SPEC];
+
+/// What every light takes.
+pub const COMMON: &[ParamSpec] =
+    &[ParamSpec::new("group", ParamType::Text, Fallback::Absent, "Light group; absent = the light's own name.")];
+
+/// A light's place as a shadow ray aims at it.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// The point.
+    pub position: DVec3,
+    /// Absolute error bound per axis.
+    pub error: DVec3,
+    /// Unit normal; zero for points.
+    pub normal: DVec3,
+}
+
+/// One way in which light arrives.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit, towards the light.
+    pub direction: DVec3,
+    /// Where the shadow ray ends; `None` = never.
+    pub target: Option<Target>,
+    /// See the contract.
+    pub light: Light,
+}
+
+/// A light that is sampled.
+#[derive(Clone)]
+pub enum Lamp {
+    /// A point.
+    Point(point::PointLight),
+    /// A spot.
+    Spot(spot::SpotLight),
+    /// From infinitely far.
+    Directional(directional::DirectionalLight),
+    /// A shining surface.
+    Area(Box<AreaLight>),
+}
+
+/// A light in a scene.
+#[derive(Clone)]
+pub struct LightEntry {
+    /// Its name.
+    pub name: String,
+    /// Hash of the name: its own dimensions.
+    pub hash: u64,
+    /// Light group, by number.
+    pub group: u32,
+    /// Shadow rays per camera-visible point.
+    pub samples: u32,
+    /// How it shines.
+    pub lamp: Lamp,
+}
+
+impl LightEntry {
+    /// A light of this name.
+    pub fn new(name: &str, group: u32, samples: u32, lamp: Lamp) -> Self {
+        LightEntry { name: name.into(), hash: of_name(name), group, samples, lamp }
+    }
+}
+
+impl Lamp {
+    /// From a light's parameters; `None` for ambient light, which has no place.
+    pub fn new(params: &Params) -> Option<Lamp> {
+        match params.spec().name {
+            "point" => Some(Lamp::Point(point::PointLight::new(params))),
+            "spot" => Some(Lamp::Spot(spot::SpotLight::new(params))),
+            "directional" => Some(Lamp::Directional(directional::DirectionalLight::new(params))),
+            _ => None,
+        }
+    }
+
+    /// A way in which its light reaches `from`, at `time`.
+    pub fn sample(
+        &self,
+        materials: &[Material],
+        textures: &Textures,
+        from: DVec3,
+        time: f64,
+        u: (f32, f32),
+    ) -> Option<LightSample> {
+        match self {
+            Lamp::Point(l) => l.sample(from),
+            Lamp::Spot(l) => l.sample(from),
+            Lamp::Directional(l) => l.sample(),
+            Lamp::Area(l) => l.sample(materials, textures, from, time, u),
+        }
+    }
+}
+
+pub use ambient::radiance as ambient_radiance;

@@ -1,0 +1,181 @@
+//! The main path, on one page: for every pass, tile, pixel and sample, a camera ray; then flocks until all is added up.
+
+use crate::camera::CameraSample;
+use crate::film::filter::Filter;
+use crate::film::{AovSample, Film, Tile};
+use crate::flock::Flock;
+use crate::integrators::{Integrator, PathState, RayKind};
+use crate::observe::{Observer, SampleId};
+use crate::sampler::{Sampler, SamplerKind};
+use crate::scene::{PRIMARY, Scene, SurfaceHit};
+use crate::statistics::Statistics;
+use kirkas_geometry::hash::of_name;
+use kirkas_optics::Lanes;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Everything that a sample depends on.
+pub struct Renderer<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// How light is found.
+    pub integrator: &'a dyn Integrator,
+    /// Pixel filter.
+    pub filter: &'a Filter,
+    /// Which sample points.
+    pub sampler: SamplerKind,
+    /// Which of all pictures.
+    pub seed: u64,
+    /// The whole image, in pixels.
+    pub resolution: (u32, u32),
+    /// Light groups that are kept apart; 1 = all in one.
+    pub planes: usize,
+    /// Whether first hits are recorded.
+    pub keeps_aovs: bool,
+    /// Rays that travel together.
+    pub flock: usize,
+}
+
+/// The caller's say in a render.
+pub trait Control: Sync {
+    /// Called when `samples` more samples of pixels are done.
+    fn progress(&self, _samples: u64) {}
+    /// Called now and then between tiles with a consistent film: a chance to save it. `false` stops at once.
+    fn between(&self, _film: &Film) -> bool {
+        true
+    }
+    /// Called after each pass over the image, all pixels having equally many samples. `false` stops.
+    fn after_pass(&self, _film: &Film) -> bool {
+        true
+    }
+}
+
+/// Never interrupts.
+pub struct Undisturbed;
+impl Control for Undisturbed {}
+
+/// A camera ray and what comes with it.
+pub(crate) struct Start {
+    pub path: PathState,
+    pub weight: f32,
+    pub uses_lens: bool,
+    pub uses_time: bool,
+}
+
+/// Samples per pass at most; the first passes are shorter, so that a picture appears soon.
+const LONGEST_PASS: u32 = 16;
+
+/// Tiles between two calls of `Control::between`.
+const TILES_PER_CHUNK: usize = 128;
+
+impl Renderer<'_> {
+    /// Bring every pixel of `film` to samples `samples`. Pixels that have some already (resumed, stopped) get the rest: a
+    /// tile that has taken n of them goes on with `samples.start + n`.
+    pub fn render(&self, film: &mut Film, samples: Range<u32>, control: &dyn Control) -> Statistics {
+        let mut statistics = Statistics::default();
+        let least = film.tiles.iter().map(|t| t.counts.first().map_or(0, |c| c.taken)).min().unwrap_or(0);
+        let mut done = samples.start.saturating_add(least).min(samples.end);
+        while done < samples.end {
+            let taken = done - samples.start;
+            let pass_end = done + taken.clamp(1, LONGEST_PASS).min(samples.end - done);
+            let tiles = film.tiles.len();
+            for first in (0..tiles).step_by(TILES_PER_CHUNK) {
+                let chunk = &mut film.tiles[first..(first + TILES_PER_CHUNK).min(tiles)];
+                let counted = chunk
+                    .par_iter_mut()
+                    .map(|tile| {
+                        let s = self.render_tile(tile, samples.start, pass_end, &mut ());
+                        control.progress(s.samples);
+                        s
+                    })
+                    .reduce(Statistics::default, |a, b| a.plus(&b));
+                statistics = statistics.plus(&counted);
+                if !control.between(film) {
+                    return statistics;
+                }
+            }
+            done = pass_end;
+            if !control.after_pass(film) {
+                break;
+            }
+        }
+        statistics
+    }
+
+    /// Take the samples of a tile that are missing up to (not including) sample `end`.
+    fn render_tile<O: Observer>(&self, tile: &mut Tile, start: u32, end: u32, observer: &mut O) -> Statistics {
+        let rect = tile.rect;
+        let first = start + tile.counts.first().map_or(0, |c| c.taken);
+        let samples = (0..rect.area()).flat_map(move |pixel| {
+            let (x, y) = (rect.x0 + pixel as u32 % rect.width(), rect.y0 + pixel as u32 / rect.width());
+            (first..end).map(move |sample| (pixel, SampleId { x, y, sample }))
+        });
+        Flock::new(self, self.flock, observer).run(tile, samples)
+    }
+
+    /// Replay samples of one pixel before an observer; the film's tile for that pixel alone.
+    pub fn replay<O: Observer>(&self, x: u32, y: u32, samples: Range<u32>, observer: &mut O) -> Tile {
+        let rect = crate::film::Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+        let layout = crate::film::FilmLayout {
+            size: self.resolution,
+            crop: rect,
+            groups: vec![String::new(); if self.planes > 1 { self.planes } else { 0 }],
+            aovs: Default::default(),
+        };
+        let mut film = Film::new(layout);
+        self.render_tile(&mut film.tiles[0], samples.start, samples.end, observer);
+        film.tiles.swap_remove(0)
+    }
+
+    /// The numbers of a sample.
+    pub(crate) fn sampler(&self, id: SampleId) -> Sampler {
+        Sampler::new(self.sampler, self.seed, id.x, id.y, id.sample)
+    }
+
+    /// The camera ray of a sample.
+    pub(crate) fn camera_path(&self, sampler: &Sampler, id: SampleId) -> Start {
+        let camera = &self.scene.camera;
+        let place = self.filter.sample(sampler.pair(FILTER));
+        let (open, close) = camera.shutter();
+        let (uses_lens, uses_time) = (camera.uses_lens(), close > open);
+        let sample = CameraSample {
+            film: (
+                f64::from(id.x) + 0.5 + f64::from(place.offset.0),
+                f64::from(id.y) + 0.5 + f64::from(place.offset.1),
+            ),
+            lens: if uses_lens { sampler.pair(LENS) } else { (0.5, 0.5) },
+            time: if uses_time { open + (close - open) * f64::from(sampler.one(TIME)) } else { open },
+        };
+        let mut ray = camera.ray(&sample, self.resolution);
+        ray.mask = PRIMARY;
+        let path = PathState {
+            ray,
+            throughput: Lanes::RGB.one() * self.scene.camera_gain,
+            depth: 0,
+            kind: RayKind::Camera,
+            branch: 0,
+            media: self.scene.camera_media,
+            passed: 0,
+        };
+        Start { path, weight: place.weight, uses_lens, uses_time }
+    }
+
+    /// What the AOVs keep of a first hit.
+    pub(crate) fn aov(&self, path: &PathState, hit: &SurfaceHit) -> AovSample {
+        let n = hit.frame.z;
+        let p = hit.position.as_vec3();
+        AovSample {
+            is_hit: true,
+            depth: hit.t * path.ray.direction.length(),
+            normal: n.to_array(),
+            albedo: self.scene.material(hit).albedo(&self.scene.textures, &hit.texture),
+            position: p.to_array(),
+            object: hit.object + 1,
+            material: hit.material + 1,
+        }
+    }
+}
+
+const FILTER: u64 = of_name("filter");
+const LENS: u64 = of_name("lens");
+const TIME: u64 = of_name("time");

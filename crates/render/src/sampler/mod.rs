@@ -1,0 +1,106 @@
+//! Samplers: a sample is a pure function of (pixel, sample index, dimension, seed), whatever the image size and the final
+//! count. A dimension is a hash of the branch of the ray tree and the purpose, so no effect shifts another's numbers.
+
+mod independent;
+mod sobol;
+
+use kirkas_geometry::hash::combine;
+use kirkas_scene::TypeSpec;
+
+/// Every sampler type.
+pub const SAMPLERS: &[&TypeSpec] = &[&sobol::SPEC, &independent::SPEC];
+
+/// Which sequence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Owen-scrambled Sobol' pairs.
+    Sobol,
+    /// Independent random numbers.
+    Independent,
+}
+
+impl SamplerKind {
+    /// By its name in [`SAMPLERS`].
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "sobol" => Some(SamplerKind::Sobol),
+            "independent" => Some(SamplerKind::Independent),
+            _ => None,
+        }
+    }
+}
+
+/// The numbers of one sample of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    kind: SamplerKind,
+    pixel_seed: u64,
+    index: u32,
+}
+
+impl Sampler {
+    /// Sample `index` of the pixel at `(x, y)` in the whole image.
+    pub fn new(kind: SamplerKind, seed: u64, x: u32, y: u32, index: u32) -> Self {
+        let pixel_seed = combine(combine(seed, 0x6b69_726b), u64::from(y) << 32 | u64::from(x));
+        Sampler { kind, pixel_seed, index }
+    }
+
+    /// Two numbers in `[0, 1)` for `purpose`.
+    pub fn pair(&self, purpose: u64) -> (f32, f32) {
+        self.pair_of(purpose, 0, 1)
+    }
+
+    /// Pair `i` of `count` that this sample uses for `purpose`: together a longer stretch of the same sequence, so that they
+    /// are stratified among themselves and with the other samples' pairs.
+    pub fn pair_of(&self, purpose: u64, i: u32, count: u32) -> (f32, f32) {
+        let index = self.index.wrapping_mul(count).wrapping_add(i);
+        let seed = combine(self.pixel_seed, purpose);
+        match self.kind {
+            SamplerKind::Sobol => sobol::pair(index, seed),
+            SamplerKind::Independent => independent::pair(index, seed),
+        }
+    }
+
+    /// One number in `[0, 1)` for `purpose`.
+    pub fn one(&self, purpose: u64) -> f32 {
+        self.pair(purpose).0
+    }
+
+    /// A hash that names this sample: for decisions that are no sequence (opacity).
+    pub fn key(&self) -> u64 {
+        combine(self.pixel_seed, u64::from(self.index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kirkas_geometry::hash::of_name;
+
+    #[test]
+    fn every_listed_sampler_has_a_kind() {
+        assert!(SAMPLERS.iter().all(|s| SamplerKind::from_name(s.name).is_some()));
+    }
+
+    #[test]
+    fn sixteen_sobol_samples_fall_in_sixteen_cells_and_split_pairs_do_too() {
+        for (samples, split) in [(16_u32, 1_u32), (4, 4)] {
+            let mut seen = [false; 16];
+            for s in 0..samples {
+                for i in 0..split {
+                    let (x, y) = Sampler::new(SamplerKind::Sobol, 0, 3, 4, s).pair_of(of_name("lens"), i, split);
+                    seen[(x * 4.0) as usize + 4 * (y * 4.0) as usize] = true;
+                }
+            }
+            assert!(seen.iter().all(|&s| s));
+        }
+    }
+
+    #[test]
+    fn pixels_purposes_and_seeds_differ() {
+        let a = |seed, x, purpose| Sampler::new(SamplerKind::Independent, seed, x, 0, 0).pair(purpose);
+        assert_ne!(a(0, 0, 1), a(0, 0, 2));
+        assert_ne!(a(0, 0, 1), a(0, 1, 1));
+        assert_ne!(a(0, 0, 1), a(1, 0, 1));
+    }
+}

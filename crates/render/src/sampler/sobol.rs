@@ -1,0 +1,35 @@
+//! Owen-scrambled Sobol' pairs: each use gets its own scramble of the first two Sobol' dimensions. Any power of two of samples
+//! is a (0, m, 2)-net, so images converge faster than with random numbers, and more samples can be added at any time.
+//!
+//! # Parameters
+//! `samples` per pixel; `seed`.
+//!
+//! # Example
+//! ```toml
+//! [sampler]
+//! type = "sobol"
+//! samples = 64
+//! ```
+//!
+//! # Limits
+//! Pairs are independent of each other: no dimension above two is stratified jointly.
+//!
+//! # References
+//! Owen 1995; Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4).
+
+use kirkas_geometry::low_discrepancy::owen_sobol_2d;
+use kirkas_scene::{Kind, ParamSpec, TypeSpec};
+
+/// The rows that every sampler takes.
+pub const ROWS: &[ParamSpec] = &[
+    ParamSpec::integer("samples", 16, (1.0, 1_073_741_824.0), "Samples per pixel."),
+    ParamSpec::integer("seed", 0, (0.0, 9.0e15), "Another seed gives another, equally good picture."),
+];
+
+/// The table.
+pub const SPEC: TypeSpec =
+    TypeSpec { kind: Kind::Sampler, name: "sobol", doc: "Owen-scrambled Sobol' pairs.", params: ROWS };
+
+pub(super) fn pair(index: u32, seed: u64) -> (f32, f32) {
+    owen_sobol_2d(index, seed)
+}

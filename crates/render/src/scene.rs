@@ -1,0 +1,305 @@
+//! The compiled scene: flat arrays, numbers instead of names, everything a ray may ask.
+
+use crate::background::Background;
+use crate::camera::Camera;
+use crate::integrators::{MediumStack, ShadowRay};
+use crate::lights::{LightEntry, LightSample};
+use crate::materials::Material;
+use crate::shapes::Surface;
+use crate::textures::{TexturePoint, Textures};
+use kirkas_accel::{Accel, Hit, HitFilter, NO_INSTANCE};
+use kirkas_geometry::hash::{combine, unit_f32};
+use kirkas_geometry::rounding::{gamma, offset_origin};
+use kirkas_geometry::transform::transform_normal;
+use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
+use kirkas_optics::{Bsdf, Interface, Light, Medium};
+use std::sync::Arc;
+
+/// What is known of one geometry of the accelerator.
+#[derive(Clone)]
+pub struct PartInfo {
+    /// Its shape, for shading.
+    pub surface: Arc<dyn Surface>,
+    /// Index into `Scene::materials`.
+    pub material: u32,
+    /// Index into `Scene::object_names`.
+    pub object: u32,
+    /// Light group of its emission.
+    pub emission_group: u32,
+}
+
+/// What is known of one instance.
+#[derive(Clone)]
+pub struct InstanceInfo {
+    /// Index into `Scene::aggregates`.
+    pub aggregate: usize,
+    /// Where it stands.
+    pub world_from_part: AnimatedTransform,
+    /// The map and its inverse if it does not move.
+    pub still: Option<(DAffine3, DAffine3)>,
+    /// Stands in for the parts' object, if the instance is one of its own.
+    pub object: Option<u32>,
+    /// Stands in for the parts' material.
+    pub material: Option<u32>,
+}
+
+/// Mask of camera rays.
+pub const PRIMARY: u32 = 1;
+/// Mask of all other rays.
+pub const SECONDARY: u32 = 2;
+
+/// A scene, ready to be rendered.
+pub struct Scene {
+    /// Finds hits.
+    pub accel: Accel,
+    /// Per geometry of the world.
+    pub world: Vec<PartInfo>,
+    /// Per aggregate, per geometry.
+    pub aggregates: Vec<Vec<PartInfo>>,
+    /// Per instance.
+    pub instances: Vec<InstanceInfo>,
+    /// All materials.
+    pub materials: Vec<Material>,
+    /// All textures.
+    pub textures: Textures,
+    /// All lights but the ambient ones.
+    pub lights: Vec<LightEntry>,
+    /// Ambient lights and their groups.
+    pub ambient: Vec<(Light, u32)>,
+    /// What is seen where nothing is hit.
+    pub background: Background,
+    /// Its light group.
+    pub background_group: u32,
+    /// The camera in use.
+    pub camera: Camera,
+    /// Bodies that the camera is inside of.
+    pub camera_media: MediumStack,
+    /// What camera rays start with: 1, or 1 / n^2 inside a body, where all radiance is n^2 times brighter.
+    pub camera_gain: f32,
+    /// Names of light groups.
+    pub groups: Vec<String>,
+    /// Names of objects.
+    pub object_names: Vec<String>,
+}
+
+/// A surface where a ray hit it, in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceHit {
+    /// Ray parameter.
+    pub t: f32,
+    /// The point.
+    pub position: DVec3,
+    /// Absolute error bound of `position`, per axis.
+    pub error: DVec3,
+    /// Unit geometric normal, outward.
+    pub normal: DVec3,
+    /// Frame of the shading normal, on the side of `normal`.
+    pub frame: Frame,
+    /// True when the ray came from the side that `normal` points to.
+    pub is_front: bool,
+    /// Where textures look.
+    pub texture: TexturePoint,
+    /// Index into `Scene::materials`.
+    pub material: u32,
+    /// Index into `Scene::object_names`.
+    pub object: u32,
+    /// Light group of emission.
+    pub emission_group: u32,
+    /// The accelerator's hit.
+    pub hit: Hit,
+}
+
+impl SurfaceHit {
+    /// A ray from this point towards `direction`, clear of the surface, at the time of `like`.
+    pub fn ray_towards(&self, direction: DVec3, like: &Ray) -> Ray {
+        let origin = offset_origin(self.position, self.error, self.normal, direction);
+        Ray { origin, direction: direction.as_vec3(), t_min: 0.0, t_max: f32::INFINITY, mask: SECONDARY, ..*like }
+    }
+
+    /// The ray that asks whether a light's sample reaches this point.
+    pub fn shadow_ray(&self, s: &LightSample, like: &Ray) -> Ray {
+        let origin = offset_origin(self.position, self.error, self.normal, s.direction);
+        let Some(target) = &s.target else {
+            return Ray { origin, direction: s.direction.as_vec3(), t_min: 0.0, t_max: f32::INFINITY, mask: SECONDARY, ..*like };
+        };
+        // End clear of the light's own surface, short of it by the rounding error of direction and parameter.
+        let end = offset_origin(target.position, target.error, target.normal, -s.direction);
+        let direction = (end.as_dvec3() - origin.as_dvec3()).as_vec3();
+        Ray { origin, direction, t_min: 0.0, t_max: 1.0 - gamma(16), mask: SECONDARY, ..*like }
+    }
+}
+
+impl Scene {
+    /// What the accelerator's hit knows of its part.
+    pub fn part(&self, hit: &Hit) -> &PartInfo {
+        match hit.instance {
+            NO_INSTANCE => &self.world[hit.geometry as usize],
+            i => &self.aggregates[self.instances[i as usize].aggregate][hit.geometry as usize],
+        }
+    }
+
+    /// Everything shading needs at a hit.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceHit {
+        let part = self.part(hit);
+        let (mut material, mut object) = (part.material, part.object);
+        let mut point;
+        if hit.instance == NO_INSTANCE {
+            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, ray);
+        } else {
+            // Ask in the instance's space, and bring the answer back.
+            let instance = &self.instances[hit.instance as usize];
+            let (to_world, to_part) = instance.still.unwrap_or_else(|| {
+                let m = instance.world_from_part.at(f64::from(ray.time));
+                (m, m.inverse())
+            });
+            let local = Ray {
+                origin: to_part.transform_point3(ray.origin.as_dvec3()).as_vec3(),
+                direction: to_part.transform_vector3(ray.direction.as_dvec3()).as_vec3(),
+                ..*ray
+            };
+            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, &local);
+            // The ray that leaves is rounded once more on its way into the instance.
+            let error = point.error + point.position.abs() * f64::from(gamma(2));
+            let a = &to_world.matrix3;
+            point.error = a.x_axis.abs() * error.x + a.y_axis.abs() * error.y + a.z_axis.abs() * error.z;
+            point.position = to_world.transform_point3(point.position);
+            point.normal = transform_normal(&to_part, point.normal).normalize();
+            point.shading_normal = transform_normal(&to_part, point.shading_normal).normalize();
+            point.tangent = to_world.transform_vector3(point.tangent);
+            material = instance.material.unwrap_or(material);
+            object = instance.object.unwrap_or(object);
+        }
+        // Half an ulp for rounding to f32, and one more for what the next intersection loses.
+        point.error += point.position.abs() * f64::from(gamma(2));
+        let is_front = ray.direction.as_dvec3().dot(point.normal) < 0.0;
+        let mut shading = point.shading_normal;
+        if !shading.is_finite() {
+            shading = point.normal;
+        }
+        if shading.dot(point.normal) < 0.0 {
+            shading = -shading;
+        }
+        // A shading normal that turns away from the viewer while the surface does not says nothing useful.
+        if (ray.direction.as_dvec3().dot(shading) < 0.0) != is_front {
+            shading = point.normal;
+        }
+        SurfaceHit {
+            t: hit.t,
+            position: point.position,
+            error: point.error,
+            normal: point.normal,
+            frame: Frame::from_z_and_tangent(shading.as_vec3().normalize(), point.tangent.as_vec3()),
+            is_front,
+            texture: TexturePoint {
+                uv: point.uv,
+                object_position: point.object_position,
+                world_position: point.position,
+            },
+            material,
+            object,
+            emission_group: part.emission_group,
+            hit: *hit,
+        }
+    }
+
+    /// The material of a hit.
+    pub fn material(&self, hit: &SurfaceHit) -> &Material {
+        &self.materials[hit.material as usize]
+    }
+
+    /// The scattering at a hit.
+    pub fn bsdf(&self, hit: &SurfaceHit, interface: Interface) -> Bsdf {
+        self.material(hit).bsdf(&self.textures, &hit.texture, interface)
+    }
+
+    /// Radiance that the surface itself sends towards where the ray came from.
+    pub fn emitted(&self, hit: &SurfaceHit) -> Light {
+        match &self.material(hit).emission {
+            Some(e) if hit.is_front || e.two_sided => e.radiance(&self.textures, &hit.texture, self.area_scale(hit)),
+            _ => Light::BLACK,
+        }
+    }
+
+    /// For emission given as power: 1 / (pi area) of the shining part, as placed.
+    fn area_scale(&self, hit: &SurfaceHit) -> f64 {
+        let part = self.part(&hit.hit);
+        let area = part.surface.area().unwrap_or(1.0);
+        let growth = match hit.hit.instance {
+            NO_INSTANCE => 1.0,
+            i => crate::lights::area_growth(&self.instances[i as usize].world_from_part.at(0.0)),
+        };
+        1.0 / (std::f64::consts::PI * area * growth)
+    }
+
+    /// A sample of `light` as seen from `from`.
+    pub fn sample_light(&self, light: &LightEntry, from: DVec3, time: f64, u: (f32, f32)) -> Option<LightSample> {
+        light.lamp.sample(&self.materials, &self.textures, from, time, u)
+    }
+
+    /// The body that fills the space at a path's end: the one of highest priority, the last entered among equals.
+    pub fn body_of(&self, media: &MediumStack) -> Option<Medium> {
+        self.ruling(media).and_then(|m| self.materials[m as usize].medium)
+    }
+
+    pub(crate) fn ruling(&self, media: &MediumStack) -> Option<u32> {
+        let priority = |m: u32| self.materials[m as usize].medium.map_or(i32::MIN, |x| x.priority);
+        media.materials().iter().copied().reduce(|best, m| if priority(m) >= priority(best) { m } else { best })
+    }
+
+    /// True when the boundary of `material` lies inside a body of higher rank and is not there (Schmidt & Budge 2002).
+    pub fn is_covered(&self, media: &MediumStack, material: u32, entering: bool) -> bool {
+        let priority = |m: u32| self.materials[m as usize].medium.map_or(i32::MIN, |x| x.priority);
+        match self.ruling(media) {
+            Some(ruler) if entering => priority(ruler) > priority(material),
+            Some(ruler) => ruler != material && media.materials().contains(&material),
+            None => false,
+        }
+    }
+
+    /// A filtered shadow ray behind the surface it met, tinted by what that lets through; `None` if it lets nothing through.
+    pub fn weakened(&self, shadow: &ShadowRay, hit: &Hit) -> Option<ShadowRay> {
+        const MOST: u32 = 256;
+        let s = self.surface(&shadow.ray, hit);
+        let material = self.material(&s);
+        let tint = material.straight_transmittance(&self.textures, &s.texture)?;
+        let light = shadow.light * tint;
+        if light.is_black() || shadow.passed >= MOST {
+            return None;
+        }
+        // Go on to the same end, from the other side.
+        let end = shadow.ray.at(1.0).as_dvec3();
+        let direction = shadow.ray.direction.as_dvec3();
+        let mut ray = s.ray_towards(direction, &shadow.ray);
+        if shadow.ray.t_max.is_finite() {
+            ray.direction = (end - ray.origin.as_dvec3()).as_vec3();
+            ray.t_max = shadow.ray.t_max;
+            if ray.direction.dot(shadow.ray.direction) <= 0.0 {
+                ray.t_max = 0.0;
+            }
+        }
+        Some(ShadowRay { ray, light, passed: shadow.passed + 1, ..*shadow })
+    }
+
+    /// Opacity of a hit on a surface with an alpha map.
+    pub fn alpha(&self, ray: &Ray, hit: &Hit) -> f32 {
+        let s = self.surface(ray, hit);
+        self.material(&s).alpha(&self.textures, &s.texture)
+    }
+}
+
+/// Decides the coin of partial opacity: hash(sample, branch, primitive) < alpha.
+pub struct AlphaFilter<'a> {
+    /// Where surfaces are looked up.
+    pub scene: &'a Scene,
+    /// Per ray: the hash of its sample and branch.
+    pub keys: &'a [u64],
+}
+
+impl HitFilter for AlphaFilter<'_> {
+    fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {
+        let alpha = self.scene.alpha(ray, hit);
+        let place = u64::from(hit.instance) << 32 | u64::from(hit.geometry);
+        let coin = combine(combine(self.keys[ray_index], place), u64::from(hit.primitive));
+        unit_f32((coin >> 32) as u32) < alpha
+    }
+}
