@@ -30,14 +30,25 @@ impl Failure {
         let Some(first) = self.diagnostics.into_iter().next() else {
             return Diagnostic::error("unreadable", "the file cannot be read");
         };
-        let place = first.labels.first().and_then(|(span, _)| {
-            let (line, column) = sources.line_column(*span)?;
-            Some(format!("{}:{line}:{column}: ", sources.get(span.source)?.path))
-        });
-        let rest = if more > 0 { format!(" (and {more} more problems in this file)") } else { String::new() };
-        let message = format!("{}{}{rest}", place.unwrap_or_default(), first.message);
-        Diagnostic { message, labels: Vec::new(), ..first }
+        let mut alone = standing_alone(&sources, first);
+        if more > 0 {
+            alone.message += &format!(" (and {more} more problems in this file)");
+        }
+        alone
     }
+}
+
+/// The same problem without spans: `path:line:column` goes into the message.
+pub fn standing_alone(sources: &Sources, mut diagnostic: Diagnostic) -> Diagnostic {
+    let labels = std::mem::take(&mut diagnostic.labels);
+    let place = labels.first().and_then(|(span, _)| {
+        let (line, column) = sources.line_column(*span)?;
+        Some(format!("{}:{line}:{column}: ", sources.get(span.source)?.path))
+    });
+    if let Some(place) = place {
+        diagnostic.message.insert_str(0, &place);
+    }
+    diagnostic
 }
 
 impl From<Diagnostic> for Failure {

@@ -14,6 +14,7 @@ pub mod assets;
 pub mod failure;
 pub mod manual;
 pub mod mesh_scene;
+pub mod paths;
 pub mod schema;
 
 mod json;
@@ -21,3 +22,4 @@ mod json;
 pub use assets::{FormatAssets, MeshCache};
 pub use failure::Failure;
 pub use load::{load, load_cached};
+pub use paths::rebase_paths;
