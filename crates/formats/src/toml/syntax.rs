@@ -7,6 +7,9 @@ use kirkas_scene::{Diagnostic, Map, SourceId, Span};
 /// More syntax errors than this are echoes of the first ones.
 const MOST_ERRORS: usize = 10;
 
+/// A line of a megabyte may hold a million errors: do not look at all of them.
+const MOST_LOOKED_AT: usize = 100;
+
 /// Parse a whole text.
 pub(super) fn parse(source: SourceId, text: &str) -> Result<Map, Vec<Diagnostic>> {
     let (root, errors) = DeTable::parse_recoverable(text);
@@ -21,7 +24,7 @@ pub(super) fn parse(source: SourceId, text: &str) -> Result<Map, Vec<Diagnostic>
 /// One error per line: what follows on the same line is an echo.
 fn problems(source: SourceId, text: &str, errors: &[::toml::de::Error]) -> Vec<Diagnostic> {
     let mut found: Vec<(usize, Diagnostic)> = Vec::new();
-    for error in errors {
+    for error in errors.iter().take(MOST_LOOKED_AT) {
         let range = error.span().unwrap_or(text.len()..text.len());
         let start = range.start.min(text.len());
         let line_start = text.as_bytes()[..start].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);

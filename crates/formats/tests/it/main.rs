@@ -1,5 +1,6 @@
 //! Tests of the readers and writers.
 
+mod damaged;
 mod load;
 mod mit6837;
 mod obj;

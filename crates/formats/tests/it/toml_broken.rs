@@ -117,3 +117,15 @@ const WORDS: &[&str] = &[
     "é",
     "\u{0}",
 ];
+
+#[test]
+fn long_texts_take_time_in_proportion() {
+    // Each of these took minutes if it were quadratic.
+    let many = 200_000;
+    let objects: String = (0..many / 4).map(|i| format!("[objects.o{i}]\ntype = 'sphere'\n")).collect();
+    let keys: String =
+        std::iter::once("[film]\n".to_string()).chain((0..many).map(|i| format!("k{i} = 1\n"))).collect();
+    for text in ["= ".repeat(many), "=\n".repeat(many), "[a]\n".repeat(many), objects, keys] {
+        survive(text.as_bytes());
+    }
+}
