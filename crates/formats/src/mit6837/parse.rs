@@ -9,8 +9,7 @@ use kirkas_scene::{Diagnostic, Span};
 pub(super) const DEEPEST: usize = 64;
 
 const MATERIALS: [&str; 6] = ["PhongMaterial", "Material", "Checkerboard", "Noise", "Marble", "Wood"];
-const STEPS: [&str; 8] =
-    ["Translate", "Scale", "UniformScale", "XRotate", "YRotate", "ZRotate", "Rotate", "Matrix"];
+const STEPS: [&str; 8] = ["Translate", "Scale", "UniformScale", "XRotate", "YRotate", "ZRotate", "Rotate", "Matrix"];
 const OBJECTS: [&str; 6] = ["Sphere", "Plane", "Triangle", "TriangleMesh", "Transform", "Group"];
 
 /// Read the whole text.
@@ -205,8 +204,16 @@ impl<'a> Parser<'a, '_> {
                 }
                 _ => {
                     let known = [
-                        "diffuseColor", "specularColor", "reflectiveColor", "transparentColor", "indexOfRefraction",
-                        "exponent", "shininess", "texture", "bump", "Noise",
+                        "diffuseColor",
+                        "specularColor",
+                        "reflectiveColor",
+                        "transparentColor",
+                        "indexOfRefraction",
+                        "exponent",
+                        "shininess",
+                        "texture",
+                        "bump",
+                        "Noise",
                     ];
                     return Err(unknown(owner, word, &known));
                 }
@@ -260,9 +267,12 @@ impl<'a> Parser<'a, '_> {
                     materials.push((index, span));
                 }
                 "materialIndex" => {
-                    return Err(Diagnostic::error("too-many", format!("`{}` mixes two materials, not more", owner.text))
-                        .at(word.span, "the third")
-                        .help("mix two, and mix the result with the third in another pattern"));
+                    return Err(Diagnostic::error(
+                        "too-many",
+                        format!("`{}` mixes two materials, not more", owner.text),
+                    )
+                    .at(word.span, "the third")
+                    .help("mix two, and mix the result with the third in another pattern"));
                 }
                 _ if texture != "checker" && self.turbulence(word, &mut turbulence)? => {}
                 _ if texture == "checker" => return Err(unknown(owner, word, &["Transform", "materialIndex"])),
@@ -283,7 +293,10 @@ impl<'a> Parser<'a, '_> {
             return Ok(());
         }
         let (message, help) = match count {
-            0 => (format!("material {index} does not exist: there are none above"), "write the `Materials` block first".into()),
+            0 => (
+                format!("material {index} does not exist: there are none above"),
+                "write the `Materials` block first".into(),
+            ),
             _ => (
                 format!("material {index} does not exist: there are {count} above"),
                 format!("write a number from 0 to {}", count - 1),
@@ -361,7 +374,9 @@ impl<'a> Parser<'a, '_> {
                 "MaterialIndex" => self.material_index(word)?,
                 _ => match self.object(word, depth + 1)? {
                     Some(object) => objects.push(object),
-                    None => return Err(unknown(owner, word, &[&OBJECTS[..], &["numObjects", "MaterialIndex"]].concat())),
+                    None => {
+                        return Err(unknown(owner, word, &[&OBJECTS[..], &["numObjects", "MaterialIndex"]].concat()));
+                    }
                 },
             }
         }
@@ -378,9 +393,12 @@ impl<'a> Parser<'a, '_> {
 
     fn object(&mut self, word: Token<'a>, depth: usize) -> Result<Option<Object>, Diagnostic> {
         if depth > DEEPEST {
-            return Err(Diagnostic::error("too-deep", format!("groups and transformations nest deeper than {DEEPEST}"))
-                .at(word.span, "too deep")
-                .help("flatten the scene"));
+            return Err(Diagnostic::error(
+                "too-deep",
+                format!("groups and transformations nest deeper than {DEEPEST}"),
+            )
+            .at(word.span, "too deep")
+            .help("flatten the scene"));
         }
         let material = self.material;
         let (shape, material) = match word.text {
@@ -403,9 +421,12 @@ impl<'a> Parser<'a, '_> {
                 self.material_index(word)?;
             } else if let Some(step) = self.step(word)? {
                 if object.is_some() {
-                    return Err(Diagnostic::error("bad-order", format!("`{}` stands after the object it should move", word.text))
-                        .at(word.span, "too late")
-                        .help("write all steps before the object"));
+                    return Err(Diagnostic::error(
+                        "bad-order",
+                        format!("`{}` stands after the object it should move", word.text),
+                    )
+                    .at(word.span, "too late")
+                    .help("write all steps before the object"));
                 }
                 steps.push(step);
             } else if let Some(found) = self.object(word, depth + 1)? {

@@ -129,9 +129,12 @@ impl<'a> Tokens<'a> {
         if token.text == "{" {
             return Ok(());
         }
-        Err(Diagnostic::error("expected-brace", format!("`{}` must be followed by `{{`, not `{}`", owner.shown(), token.shown()))
-            .at(token.span, "expected `{`")
-            .help(format!("write `{} {{ ... }}`", owner.shown())))
+        Err(Diagnostic::error(
+            "expected-brace",
+            format!("`{}` must be followed by `{{`, not `{}`", owner.shown(), token.shown()),
+        )
+        .at(token.span, "expected `{`")
+        .help(format!("write `{} {{ ... }}`", owner.shown())))
     }
 
     /// The next word inside the block of `owner`; `None` at its `}`.

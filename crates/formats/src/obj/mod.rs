@@ -173,9 +173,12 @@ fn open_libraries(
             .collect();
         if parts.is_empty() {
             warnings.push(
-                Diagnostic::warning("missing-mtl", format!("the materials in `{whole}` are missing: {}", problem.message))
-                    .at(line.span(statements::SOURCE), "cannot be read")
-                    .help("put the file beside the OBJ; until then the object's own material is used"),
+                Diagnostic::warning(
+                    "missing-mtl",
+                    format!("the materials in `{whole}` are missing: {}", problem.message),
+                )
+                .at(line.span(statements::SOURCE), "cannot be read")
+                .help("put the file beside the OBJ; until then the object's own material is used"),
             );
         }
         opened.extend(parts.into_iter().filter(|(name, _)| tried.insert(name.clone())));

@@ -31,8 +31,7 @@ pub(super) struct Material {
     pub map_d: Option<Map>,
 }
 
-const KNOWN: [&str; 13] =
-    ["newmtl", "Ka", "Kd", "Ks", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd", "map_d"];
+const KNOWN: [&str; 13] = ["newmtl", "Ka", "Kd", "Ks", "Ke", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd", "map_d"];
 
 /// Read all materials of one file.
 pub(super) fn read(
@@ -54,9 +53,12 @@ pub(super) fn read(
                 all.push(Material { name: name.text().into_owned(), ..Material::default() });
             } else {
                 let Some(material) = all.last_mut() else {
-                    return Err(Diagnostic::error("no-material", format!("`{}` stands before any material", word.shown()))
-                        .at(word.span(source), "belongs to no material")
-                        .help("start each material with `newmtl NAME`"));
+                    return Err(Diagnostic::error(
+                        "no-material",
+                        format!("`{}` stands before any material", word.shown()),
+                    )
+                    .at(word.span(source), "belongs to no material")
+                    .help("start each material with `newmtl NAME`"));
                 };
                 read_statement(word, &mut lines, source, material, warnings)?;
             }

@@ -9,9 +9,44 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Statements without a surface that Kirkas draws, or grouping only.
 const IGNORED: [&str; 38] = [
-    "o", "g", "s", "mg", "l", "p", "vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole",
-    "scrv", "sp", "end", "con", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech", "call",
-    "csh", "maplib", "usemap", "fo", "bzp", "bsp", "res", "cdc",
+    "o",
+    "g",
+    "s",
+    "mg",
+    "l",
+    "p",
+    "vp",
+    "cstype",
+    "deg",
+    "bmat",
+    "step",
+    "curv",
+    "curv2",
+    "surf",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "call",
+    "csh",
+    "maplib",
+    "usemap",
+    "fo",
+    "bzp",
+    "bsp",
+    "res",
+    "cdc",
 ];
 const KNOWN: [&str; 6] = ["v", "vt", "vn", "f", "usemtl", "mtllib"];
 const MOST_WARNINGS: usize = 20;
@@ -72,9 +107,12 @@ fn read_statement<'a>(word: Word<'a>, lines: &mut Lines<'a>, all: &mut Statement
             }
             let count = all.corners.len() - face.first;
             if count < 3 {
-                return Err(Diagnostic::error("bad-face", format!("a face needs at least 3 corners, this one has {count}"))
-                    .at(word.span(SOURCE), "this face")
-                    .help("remove the face, or make it a line with `l`"));
+                return Err(Diagnostic::error(
+                    "bad-face",
+                    format!("a face needs at least 3 corners, this one has {count}"),
+                )
+                .at(word.span(SOURCE), "this face")
+                .help("remove the face, or make it a line with `l`"));
             }
             all.faces.push(face);
         }
@@ -83,7 +121,8 @@ fn read_statement<'a>(word: Word<'a>, lines: &mut Lines<'a>, all: &mut Statement
         other => {
             let known = std::str::from_utf8(other).is_ok_and(|w| IGNORED.contains(&w));
             if !known && all.warnings.len() < MOST_WARNINGS {
-                let mut d = kirkas_scene::diagnostic::unknown_name("statement", &word.shown(), word.span(SOURCE), KNOWN);
+                let mut d =
+                    kirkas_scene::diagnostic::unknown_name("statement", &word.shown(), word.span(SOURCE), KNOWN);
                 d.severity = kirkas_scene::Severity::Warning;
                 all.warnings.push(d);
             }
@@ -135,9 +174,13 @@ fn read_corner(word: Word, all: &Statements) -> Result<[u32; 3], Diagnostic> {
         if part.is_empty() && i > 0 {
             continue;
         }
-        let index = std::str::from_utf8(part).ok().and_then(|t| t.parse::<i64>().ok()).ok_or_else(|| bad_corner(word))?;
+        let index =
+            std::str::from_utf8(part).ok().and_then(|t| t.parse::<i64>().ok()).ok_or_else(|| bad_corner(word))?;
         corner[i] = match index {
-            1.. => u32::try_from(index - 1).ok().filter(|&i| i != NONE).ok_or_else(|| no_such(word, i, index, counts[i]))?,
+            1.. => u32::try_from(index - 1)
+                .ok()
+                .filter(|&i| i != NONE)
+                .ok_or_else(|| no_such(word, i, index, counts[i]))?,
             0 => {
                 return Err(Diagnostic::error("bad-index", format!("a {} has number 0", KINDS[i]))
                     .at(word.span(SOURCE), "here")

@@ -34,7 +34,11 @@ pub(super) fn read(bytes: &[u8], header: &Header) -> Result<Body, Diagnostic> {
     let mut ascii = Ascii { bytes, at: header.body, last: header.body };
     let mut binary = Binary { bytes, at: header.body, big: header.format == Format::Big };
     for element in header.elements.iter().filter(|e| !e.properties.is_empty()) {
-        check_count(element, header.format, bytes.len() - if header.format == Format::Ascii { ascii.at } else { binary.at })?;
+        check_count(
+            element,
+            header.format,
+            bytes.len() - if header.format == Format::Ascii { ascii.at } else { binary.at },
+        )?;
         match (header.format, element.fixed_layout()) {
             (Format::Ascii, _) => walk(&mut ascii, element, &mut body)?,
             (_, Some(layout)) => read_fixed(&mut binary, element, &layout, &mut body),
@@ -73,8 +77,12 @@ fn read_fixed(binary: &mut Binary, element: &Element, layout: &[(usize, Ty, Role
         for &(offset, ty, role) in layout {
             let Role::Slot(slot) = role else { continue };
             match slot {
-                0..3 => column(records, stride, offset, ty, binary.big, body.positions.iter_mut().map(|p| &mut p[slot])),
-                3..6 => column(records, stride, offset, ty, binary.big, body.normals.iter_mut().map(|n| &mut n[slot - 3])),
+                0..3 => {
+                    column(records, stride, offset, ty, binary.big, body.positions.iter_mut().map(|p| &mut p[slot]))
+                }
+                3..6 => {
+                    column(records, stride, offset, ty, binary.big, body.normals.iter_mut().map(|n| &mut n[slot - 3]))
+                }
                 _ => column(records, stride, offset, ty, binary.big, body.uvs.iter_mut().map(|t| &mut t[slot - 6])),
             }
         }
@@ -206,8 +214,11 @@ fn add_face(body: &mut Body, face: u64, corners: &[u32], place: impl Fn() -> Str
             body.polygons.push(Polygon { before: body.triangles.len(), corners: start..start + corners.len() });
         }
         _ => {
-            return Err(Diagnostic::error("bad-face", format!("face {face} has {} corners; it needs at least 3 ({})", corners.len(), place()))
-                .help("remove degenerate faces and export the mesh again"));
+            return Err(Diagnostic::error(
+                "bad-face",
+                format!("face {face} has {} corners; it needs at least 3 ({})", corners.len(), place()),
+            )
+            .help("remove degenerate faces and export the mesh again"));
         }
     }
     Ok(())
@@ -347,9 +358,16 @@ fn walk(values: &mut impl Values, element: &Element, body: &mut Body) -> Result<
                 Storage::List(count, ty) => {
                     let n = values.next(count).map_err(|s| stop(s, values))?;
                     if n < 0.0 {
-                        return Err(Diagnostic::error("bad-list", format!("{} {row} has a list of {n} items ({})", super::header::shown(&element.name), values.place()))
-                            .at(values.span(), "negative")
-                            .help("the file is damaged; export it again"));
+                        return Err(Diagnostic::error(
+                            "bad-list",
+                            format!(
+                                "{} {row} has a list of {n} items ({})",
+                                super::header::shown(&element.name),
+                                values.place()
+                            ),
+                        )
+                        .at(values.span(), "negative")
+                        .help("the file is damaged; export it again"));
                     }
                     if n > (values.left() + 1) as f64 / values.least(ty) as f64 {
                         return Err(cut_off(element, row, values.length()));
@@ -382,16 +400,23 @@ impl<V: Values> ValuesPlace for V {
     }
 }
 
-fn explain(stop: Stop, element: &Element, row: u64, property: &super::header::Property, values: &dyn ValuesPlace) -> Diagnostic {
+fn explain(
+    stop: Stop,
+    element: &Element,
+    row: u64,
+    property: &super::header::Property,
+    values: &dyn ValuesPlace,
+) -> Diagnostic {
     let (place, span, length) = values.place_of();
     let (name, property) = (super::header::shown(&element.name), super::header::shown(&property.name));
     match stop {
         Stop::End => cut_off(element, row, length),
-        Stop::NotANumber(word) => {
-            Diagnostic::error("not-a-number", format!("`{word}` is no value for `{property}` of {name} {row} ({place})"))
-                .at(span, "expected a number")
-                .help("the file is damaged; export it again")
-        }
+        Stop::NotANumber(word) => Diagnostic::error(
+            "not-a-number",
+            format!("`{word}` is no value for `{property}` of {name} {row} ({place})"),
+        )
+        .at(span, "expected a number")
+        .help("the file is damaged; export it again"),
     }
 }
 
@@ -401,12 +426,21 @@ pub(super) fn not_finite(vertex: u64, place: &str) -> Diagnostic {
 }
 
 /// A face, or triangle strips that end at -1.
-fn add_list(body: &mut Body, element: &Element, row: u64, list: &[i64], values: &impl Values) -> Result<(), Diagnostic> {
+fn add_list(
+    body: &mut Body,
+    element: &Element,
+    row: u64,
+    list: &[i64],
+    values: &impl Values,
+) -> Result<(), Diagnostic> {
     let number = |v: i64| {
         u32::try_from(v).map_err(|_| {
-            Diagnostic::error("bad-index", format!("{} {row} uses vertex {v} ({})", super::header::shown(&element.name), values.place()))
-                .at(values.span(), "no such vertex")
-                .help("vertices count from 0; export the mesh again")
+            Diagnostic::error(
+                "bad-index",
+                format!("{} {row} uses vertex {v} ({})", super::header::shown(&element.name), values.place()),
+            )
+            .at(values.span(), "no such vertex")
+            .help("vertices count from 0; export the mesh again")
         })
     };
     if element.kind == Kind::Face {
