@@ -31,7 +31,7 @@ pub struct Statistics {
     pub instances: usize,
     /// Memory of the structure, without the scene's own arrays.
     pub bytes: usize,
-    /// Expected cost of a random ray through the world's tree (surface-area heuristic; a node's visit costs 1).
+    /// Expected cost of a random ray through the world's tree (surface-area heuristic; a primitive test costs 1, a node visit 2).
     pub sah_cost: f64,
     /// Levels of the deepest tree.
     pub depth: usize,

@@ -5,7 +5,7 @@ use crate::scene_geometry::{Geometry, Instance, SceneGeometry, Shape};
 use kirkas_geometry::transform::is_invertible;
 
 /// More primitives than this, in the world (with the instances) or in one aggregate, are refused.
-pub(crate) const MAX_PRIMITIVES: u64 = 1 << 28;
+pub(crate) const MAX_PRIMITIVES: u64 = (1 << 28) - 1;
 
 /// The first fault of a scene, if it has one.
 pub(crate) fn scene(scene: &SceneGeometry) -> Result<(), AccelError> {

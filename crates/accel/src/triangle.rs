@@ -40,7 +40,7 @@ fn least(a: f32, b: f32) -> f32 {
 }
 
 /// The crossing `(t, u, v)` of a ray and a triangle; `u` and `v` weigh corners 1 and 2. Two-sided.
-#[inline]
+#[inline(always)]
 pub fn intersect(corners: &Corners, ray: &PreparedRay) -> Option<(f32, f32, f32)> {
     let [kx, ky, kz] = ray.axes.map(|k| k.min(2));
     let [ox, oy, oz] = ray.sheared_origin;
@@ -55,9 +55,19 @@ pub fn intersect(corners: &Corners, ray: &PreparedRay) -> Option<(f32, f32, f32)
     if negative && positive {
         return None;
     }
-    let (u, v) = barycentric(weights, [a, b, c])?;
-    let t = distance(corners, ray)?;
-    Some((t, u, v))
+    crossing(corners, ray, weights, [a, b, c])
+}
+
+/// What follows once the edges are passed, which is seldom.
+#[inline(never)]
+fn crossing(
+    corners: &Corners,
+    ray: &PreparedRay,
+    weights: [f32; 3],
+    sheared: [(f32, f32); 3],
+) -> Option<(f32, f32, f32)> {
+    let (u, v) = barycentric(weights, sheared)?;
+    Some((distance(corners, ray)?, u, v))
 }
 
 /// Weights of corners 1 and 2. Where f32 overflows or underflows, the signs are decided in f64, where they are exact.

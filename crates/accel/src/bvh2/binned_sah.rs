@@ -10,7 +10,7 @@ use crate::Executor;
 use kirkas_geometry::{Bounds3, Vec3};
 
 /// Cost of visiting a node; testing a primitive costs 1.
-pub(crate) const NODE_COST: f32 = 1.0;
+pub(crate) const NODE_COST: f32 = 2.0;
 const BINS: usize = 16;
 /// Subtrees larger than this are handed to the executor in two halves.
 const FORK_ABOVE: usize = 1 << 15;
@@ -62,15 +62,21 @@ impl Box4 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reference(Box4);
 
+/// Ids ride in the fourth lanes as the bits of normal numbers: arithmetic on subnormal ones is hundreds of cycles slow.
+const AS_NUMBER: u32 = 0x4000_0000;
+/// Ids are at most this.
+pub(crate) const MAX_ID: u32 = (1 << 28) - 1;
+
 impl Reference {
     pub fn new(b: &Bounds3, geometry: u32, primitive: u32) -> Self {
-        let lanes = |v: Vec3, id: u32| Lanes([v.x, v.y, v.z, f32::from_bits(id)]);
+        debug_assert!(geometry <= MAX_ID && primitive <= MAX_ID);
+        let lanes = |v: Vec3, id: u32| Lanes([v.x, v.y, v.z, f32::from_bits(AS_NUMBER | id)]);
         Reference(Box4 { lo: lanes(b.min, geometry), hi: lanes(b.max, primitive) })
     }
 
     /// Geometry and primitive.
     pub fn ids(&self) -> (u32, u32) {
-        (self.0.lo.0[3].to_bits(), self.0.hi.0[3].to_bits())
+        (self.0.lo.0[3].to_bits() & MAX_ID, self.0.hi.0[3].to_bits() & MAX_ID)
     }
 
     pub fn bounds(&self) -> Bounds3 {
@@ -181,13 +187,13 @@ fn split(references: &mut [Reference], whole: &Box4, depth: usize) -> Option<Spl
         let c = r.center();
         Box4 { lo: b.lo.min(c), hi: b.hi.max(c) }
     });
-    let bins = if n <= 2 * MAX_LEAF { BINS / 2 } else { BINS };
-    let binning = Binning::new(&centers, bins);
-    let best = binning.best_plane(references, bins);
+    let binning = Binning::new(&centers);
+    // Few references need few planes.
+    let best = if n <= MAX_LEAF { binning.best_plane::<8>(references) } else { binning.best_plane::<BINS>(references) };
     let leaf_cost = n as f32 * whole.half_area();
     match best {
         Some(plane) if n > MAX_LEAF || plane.cost + NODE_COST * whole.half_area() < leaf_cost => {
-            let left_count = partition(references, |r| binning.bin(r, plane.axis) <= plane.bin);
+            let left_count = partition(references, |r| binning.bin(r, plane.axis, plane.bins) <= plane.last_left);
             debug_assert_eq!(left_count, plane.left_count);
             Some(Split { left_count, boxes: plane.boxes })
         }
@@ -217,13 +223,15 @@ fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) ->
 /// The map from centers to bins.
 struct Binning {
     low: Lanes,
+    /// One over the size; 0 where the centers do not differ.
     scale: Lanes,
 }
 
-/// A plane after bin `bin` of `axis`.
+/// A plane between bins.
 struct Plane {
     axis: usize,
-    bin: usize,
+    bins: u32,
+    last_left: u32,
     cost: f32,
     left_count: usize,
     boxes: [Box4; 2],
@@ -233,69 +241,79 @@ struct Plane {
 const INTEGER_IN_LOW_BITS: f32 = 8_388_608.0;
 
 impl Binning {
-    fn new(centers: &Box4, bins: usize) -> Self {
+    fn new(centers: &Box4) -> Self {
         let scale = core::array::from_fn(|k| {
-            let size = centers.hi.0[k] - centers.lo.0[k];
-            let scale = (bins as f32 * 0.998) / size;
-            if size > 0.0 && scale.is_finite() { scale } else { 0.0 }
+            let scale = 1.0 / (centers.hi.0[k] - centers.lo.0[k]);
+            if scale > 0.0 && scale.is_finite() { scale } else { 0.0 }
         });
         Binning { low: centers.lo, scale: Lanes(scale) }
     }
 
+    /// Monotone in the center: `(0, bins)` to `0..bins`.
     #[inline(always)]
-    fn all_bins(&self, r: &Reference) -> [usize; 4] {
-        let c = r.center();
-        core::array::from_fn(|k| {
-            let x = (c.0[k] - self.low.0[k]) * self.scale.0[k] - 0.499;
-            (((x + 1.0) + INTEGER_IN_LOW_BITS).to_bits() as usize).wrapping_sub(1) & (BINS - 1)
-        })
+    fn bin(&self, r: &Reference, axis: usize, bins: u32) -> u32 {
+        let k = axis & 3;
+        let c = r.0.lo.0[k] * 0.5 + r.0.hi.0[k] * 0.5;
+        let x = (c - self.low.0[k]) * self.scale.0[k] * (bins as f32 - 0.02);
+        // Half a bin is added, lest 0 be rounded to a bin of its own, and one bin taken off again.
+        ((x + 0.51) + INTEGER_IN_LOW_BITS).to_bits().wrapping_sub(1) & (bins - 1)
     }
 
-    #[inline(always)]
-    fn bin(&self, r: &Reference, axis: usize) -> usize {
-        self.all_bins(r)[axis & 3]
-    }
-
-    fn best_plane(&self, references: &[Reference], bins: usize) -> Option<Plane> {
-        let mut boxes = [[Box4::EMPTY; BINS]; 3];
-        let mut counts = [[0_u32; BINS]; 3];
+    fn best_plane<const N: usize>(&self, references: &[Reference]) -> Option<Plane> {
+        let mut boxes = [[Box4::EMPTY; N]; 3];
+        let mut counts = [[0_u32; N]; 3];
         for r in references {
-            let at = self.all_bins(r);
+            let at: [u32; 4] = core::array::from_fn(|axis| self.bin(r, axis, N as u32));
             for axis in 0..3 {
-                let b = &mut boxes[axis][at[axis]];
-                *b = b.union(r.0);
-                counts[axis][at[axis]] += 1;
+                let i = at[axis] as usize & (N - 1);
+                boxes[axis][i] = boxes[axis][i].union(r.0);
+                counts[axis][i] += 1;
             }
         }
-        let mut best: Option<Plane> = None;
-        for axis in (0..3).filter(|&a| self.scale.0[a] > 0.0) {
-            let plane = sweep(axis, &boxes[axis], &counts[axis], bins, references.len());
-            if plane.as_ref().is_some_and(|p| best.as_ref().is_none_or(|b| p.cost < b.cost)) {
-                best = plane;
+        let mut best = (f32::INFINITY, 0, 0);
+        for axis in 0..3 {
+            if self.scale.0[axis] > 0.0 {
+                let (cost, last_left) = sweep(&boxes[axis], &counts[axis]);
+                if cost < best.0 {
+                    best = (cost, axis, last_left);
+                }
             }
         }
-        best
+        let (cost, axis, last_left) = best;
+        let around = |b: &[Box4]| b.iter().fold(Box4::EMPTY, |all, b| all.union(*b));
+        let (left, right) = boxes[axis].split_at(last_left + 1);
+        let left_count = counts[axis][..=last_left].iter().sum::<u32>() as usize;
+        let boxes = [around(left), around(right)];
+        let plane = Plane { axis, bins: N as u32, last_left: last_left as u32, cost, left_count, boxes };
+        (cost < f32::INFINITY).then_some(plane)
     }
 }
 
-/// The best plane of one axis.
-fn sweep(axis: usize, boxes: &[Box4; BINS], counts: &[u32; BINS], bins: usize, n: usize) -> Option<Plane> {
-    let mut right = [Box4::EMPTY; BINS + 1];
-    for i in (1..bins).rev() {
-        right[i] = right[i + 1].union(boxes[i]);
+/// The least cost among one axis' planes, and the last bin to the left of that plane.
+#[inline(always)]
+fn sweep<const N: usize>(boxes: &[Box4; N], counts: &[u32; N]) -> (f32, usize) {
+    let mut right_cost = [0.0_f32; N];
+    let (mut right, mut right_count) = (Box4::EMPTY, 0);
+    for i in (1..N).rev() {
+        right = right.union(boxes[i]);
+        right_count += counts[i];
+        right_cost[i - 1] = cost(right_count, &right);
     }
     let (mut left, mut left_count) = (Box4::EMPTY, 0);
-    let mut best: Option<Plane> = None;
-    for i in 0..bins - 1 {
+    let mut best = (f32::INFINITY, 0);
+    for i in 0..N - 1 {
         left = left.union(boxes[i]);
-        left_count += counts[i] as usize;
-        if left_count == 0 || left_count == n {
-            continue;
-        }
-        let cost = left_count as f32 * left.half_area() + (n - left_count) as f32 * right[i + 1].half_area();
-        if best.as_ref().is_none_or(|b| cost < b.cost) {
-            best = Some(Plane { axis, bin: i, cost, left_count, boxes: [left, right[i + 1]] });
+        left_count += counts[i];
+        let sum = cost(left_count, &left) + right_cost[i];
+        if sum < best.0 {
+            best = (sum, i);
         }
     }
     best
+}
+
+/// Tests expected in a side of a split; an empty side makes the plane worthless.
+#[inline(always)]
+fn cost(count: u32, around: &Box4) -> f32 {
+    if count == 0 { f32::INFINITY } else { count as f32 * around.half_area() }
 }

@@ -19,7 +19,7 @@ use node::{Child, Node, Record, RecordKind};
 const MAX_DEPTH: usize = 64;
 
 /// The geometry field of a reference to an instance.
-const IS_INSTANCE: u32 = u32::MAX;
+const IS_INSTANCE: u32 = binned_sah::MAX_ID;
 
 /// A tree over one level: the world with its instances, or one aggregate.
 #[derive(Default)]

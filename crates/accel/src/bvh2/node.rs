@@ -1,5 +1,6 @@
 //! How the tree lies in memory: nodes of 64 bytes with the boxes of both children, leaves as runs of 48-byte records.
 
+use crate::prepared_ray::PreparedRay;
 use crate::triangle::Corners;
 use kirkas_geometry::Bounds3;
 use kirkas_geometry::bounds::pad_far;
@@ -50,6 +51,18 @@ impl Child {
         ((self.0 & FIRST) as usize, (self.0 >> 28 & 7) as usize + 1)
     }
 
+    /// As a number.
+    #[inline]
+    pub fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// The child that [`Child::bits`] gave.
+    #[inline]
+    pub fn from_bits(bits: u32) -> Self {
+        Child(bits)
+    }
+
     /// The same child in an array where the nodes start `by` later.
     pub fn moved(self, by: usize) -> Self {
         if self.is_leaf() { self } else { Child::node(self.index() + by) }
@@ -59,11 +72,23 @@ impl Child {
 /// What the box test of both children needs of a ray.
 #[derive(Clone, Copy)]
 pub(crate) struct NodeRay {
-    pub origin: [f32; 3],
-    pub inverse: [f32; 3],
+    origin: [f32; 3],
+    inverse: [f32; 3],
     /// 1 where the direction is negative: the high plane is met first.
-    pub first: [usize; 3],
-    pub t_min: f32,
+    first: [usize; 3],
+    t_min: f32,
+}
+
+impl NodeRay {
+    pub fn new(ray: &PreparedRay) -> Self {
+        let inverse = ray.inverse.to_array();
+        NodeRay {
+            origin: ray.clipped.origin.to_array(),
+            inverse,
+            first: inverse.map(|i| usize::from(i.is_sign_negative())),
+            t_min: ray.clipped.t_min,
+        }
+    }
 }
 
 impl Node {
@@ -89,14 +114,12 @@ impl Node {
             for c in 0..2 {
                 let e = (enter[c] - ray.origin[k]) * ray.inverse[k];
                 let l = (leave[c] - ray.origin[k]) * ray.inverse[k];
+                // NaN, a ray within a face, loses both comparisons.
                 near[c] = if e > near[c] { e } else { near[c] };
                 far[c] = if l < far[c] { l } else { far[c] };
             }
         }
-        for f in &mut far {
-            *f = pad_far(*f);
-            *f = if limit < *f { limit } else { *f };
-        }
+        let far = far.map(pad_far).map(|f| if limit < f { limit } else { f });
         (near, [near[0] <= far[0], near[1] <= far[1]])
     }
 }

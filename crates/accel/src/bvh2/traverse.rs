@@ -1,6 +1,6 @@
 //! Takes a ray through the tree, the nearer child first.
 
-use super::node::{NodeRay, Record, RecordKind};
+use super::node::{Child, NodeRay, Record, RecordKind};
 use super::{MAX_DEPTH, Tree};
 use crate::prepared_ray::PreparedRay;
 use crate::primitive;
@@ -24,29 +24,30 @@ impl Tree {
         let Some(mut current) = self.root else { return };
         let node_ray = NodeRay::new(ray);
         // Each inner node on the way down leaves at most one child behind, so the depth bounds the stack.
-        let mut stack = [(0.0_f32, current); MAX_DEPTH];
-        let mut top = 0;
-        loop {
-            if search.is_done() {
-                return;
-            }
+        let mut stack = Stack { entries: [0; MAX_DEPTH], len: 0 };
+        let mut nodes_visited = 0;
+        'walk: while !search.is_done() {
             if current.is_leaf() {
                 let (first, count) = current.run();
                 for record in &self.records[first..first + count] {
                     test(record, level, ray, search, &mut enter);
                 }
             } else {
-                search.counters.nodes_visited += 1;
+                nodes_visited += 1;
                 let node = &self.nodes[current.index()];
                 let limit = if search.limit < ray.clipped.t_max { search.limit } else { ray.clipped.t_max };
                 let (near, hit) = node.intersect(&node_ray, limit);
                 let [a, b] = node.children;
+                // Branches, not arithmetic: a guessed branch starts to load the child early.
                 match hit {
                     [true, true] => {
-                        let (nearer, farther) = if near[1] < near[0] { (b, (near[0], a)) } else { (a, (near[1], b)) };
-                        stack[top] = farther;
-                        top += 1;
-                        current = nearer;
+                        current = if near[1] < near[0] {
+                            stack.push(near[0], a);
+                            b
+                        } else {
+                            stack.push(near[1], b);
+                            a
+                        };
                         continue;
                     }
                     [true, false] => {
@@ -62,29 +63,38 @@ impl Tree {
             }
             // Take up what is not yet ruled out; equal `t` is not.
             loop {
-                if top == 0 {
-                    return;
-                }
-                top -= 1;
-                let (near, child) = stack[top];
-                if near <= search.limit {
-                    current = child;
-                    break;
+                match stack.pop() {
+                    None => break 'walk,
+                    Some((near, child)) if near <= search.limit => {
+                        current = child;
+                        break;
+                    }
+                    Some(_) => {}
                 }
             }
         }
+        search.counters.nodes_visited += nodes_visited;
     }
 }
 
-impl NodeRay {
-    fn new(ray: &PreparedRay) -> Self {
-        let inverse = ray.inverse.to_array();
-        NodeRay {
-            origin: ray.clipped.origin.to_array(),
-            inverse,
-            first: inverse.map(|i| usize::from(i.is_sign_negative())),
-            t_min: ray.clipped.t_min,
-        }
+/// What was left behind: in each entry when the ray enters it (bits of an f32), and the child.
+struct Stack {
+    entries: [u64; MAX_DEPTH],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn push(&mut self, near: f32, child: Child) {
+        self.entries[self.len] = u64::from(near.to_bits()) << 32 | u64::from(child.bits());
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<(f32, Child)> {
+        self.len = self.len.checked_sub(1)?;
+        let entry = self.entries[self.len];
+        Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
     }
 }
 

@@ -55,5 +55,5 @@ impl UserShape for Endless {
 #[test]
 fn too_many_primitives_are_refused() {
     let text = error(world(vec![Shape::User(Arc::new(Endless))]));
-    assert_eq!(text, "the world holds 536870912 primitives; the limit is 268435456");
+    assert_eq!(text, "the world holds 536870912 primitives; the limit is 268435455");
 }
