@@ -43,6 +43,9 @@ use kirkas_scene::{Diagnostic, Entity, MeshData, Sources};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+/// Gives the bytes of a file that an `mtllib` line names, by its name as written.
+pub type OpenMtl<'a> = dyn FnMut(&str) -> Result<Arc<[u8]>, Diagnostic> + 'a;
+
 /// A mesh, and what was passed over in reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
@@ -55,20 +58,12 @@ pub struct Reading {
 }
 
 /// Read the OBJ file `bytes`, known to the user as `path`. `mtl` gives the bytes of a file that `mtllib` names.
-pub fn read(
-    bytes: &[u8],
-    path: &str,
-    mtl: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, Diagnostic>,
-) -> Result<MeshData, Failure> {
+pub fn read(bytes: &[u8], path: &str, mtl: &mut OpenMtl) -> Result<MeshData, Failure> {
     read_with_warnings(bytes, path, mtl).map(|r| r.mesh)
 }
 
 /// [`read`], with the warnings.
-pub fn read_with_warnings(
-    bytes: &[u8],
-    path: &str,
-    mtl: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, Diagnostic>,
-) -> Result<Reading, Failure> {
+pub fn read_with_warnings(bytes: &[u8], path: &str, mtl: &mut OpenMtl) -> Result<Reading, Failure> {
     let fail = |d: Diagnostic| {
         let mut sources = Sources::default();
         sources.add(path, printable(bytes));
@@ -149,7 +144,7 @@ fn no_faces(path: &str, statements: &statements::Statements) -> Diagnostic {
 /// The contents of all libraries that can be had. A line may hold one name with spaces, or several names.
 fn open_libraries(
     statements: &statements::Statements,
-    mtl: &mut dyn FnMut(&str) -> Result<Arc<[u8]>, Diagnostic>,
+    mtl: &mut OpenMtl,
     warnings: &mut Vec<Diagnostic>,
 ) -> Vec<(String, Arc<[u8]>)> {
     let mut opened: Vec<(String, Arc<[u8]>)> = Vec::new();

@@ -290,10 +290,8 @@ fn read_property(words: &Words, span: Span, element: &Element) -> Result<Propert
         }
         _ => Role::Other,
     };
-    if let Storage::List(count, _) = storage {
-        if !count.is_integer() {
-            return Err(bad_line(span, "the length of a list must be of a whole-number type"));
-        }
+    if matches!(storage, Storage::List(count, _) if !count.is_integer()) {
+        return Err(bad_line(span, "the length of a list must be of a whole-number type"));
     }
     // The first of two properties with one meaning holds.
     let role = if role != Role::Other && element.has(role) { Role::Other } else { role };
