@@ -3,7 +3,7 @@
 //! Nothing here changes what a sample is: flocks of any size give the same bits, because every sample adds integers.
 
 use crate::film::{AovSample, FinishedSample, Tile, fixed};
-use crate::integrators::{Integrator, PathState, RayKind, ShadowRay, StepOutput};
+use crate::integrators::{PathState, RayKind, ShadowRay, StepOutput};
 use crate::observe::{Observer, SampleId};
 use crate::render::Renderer;
 use crate::sampler::Sampler;

@@ -55,7 +55,7 @@ impl Material {
     pub fn new(params: &Params, names: &TextureNames) -> Option<Material> {
         let model = BsdfModel::prepare(params)?;
         let source = |row: &'static ParamSpec| match (row.ty, row.fallback) {
-            (ParamType::NumberTexture, _) => Some(names.number_source(params, row.name).into()),
+            (ParamType::NumberTexture, _) => Some(names.number(params, row.name).into()),
             (_, kirkas_scene::Fallback::Absent) => names.optional_color(params, row.name),
             _ => Some(names.color(params, row.name)),
         };
@@ -66,7 +66,7 @@ impl Material {
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,
-            alpha: names.number_source(params, "alpha"),
+            alpha: names.number(params, "alpha"),
             emission: (params.spec().name == "emitter").then(|| Emission::new(params, names)),
             medium,
             radiance_gain: medium.filter(|_| !is_constant).map_or(1.0, |m| m.ior * m.ior),

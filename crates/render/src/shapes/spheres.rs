@@ -13,7 +13,8 @@ use std::sync::{Arc, OnceLock};
 /// Spheres of one object, its map to part space being a similarity.
 pub struct SphereSet {
     spheres: Arc<Vec<Sphere>>,
-    part_from_object: DMat3,
+    /// The turn (and mirror) of the map, without its scale.
+    part_turn: DMat3,
     object_from_part: DAffine3,
     bounds: Bounds3,
     /// Area of the first, of the first two, ...
@@ -43,7 +44,7 @@ impl SphereSet {
         let spheres = Arc::new(spheres);
         let surface = Arc::new(SphereSet {
             spheres: spheres.clone(),
-            part_from_object: m.matrix3,
+            part_turn: m.matrix3 * (1.0 / scale),
             object_from_part: m.inverse(),
             bounds,
             cumulative_area: OnceLock::new(),
@@ -109,7 +110,7 @@ impl Surface for SphereSet {
             normal,
             shading_normal: normal,
             uv,
-            tangent: self.part_from_object * sphere_tangent(n),
+            tangent: self.part_turn * sphere_tangent(n) * radius,
             object_position: self.object_from_part.transform_point3(position),
         }
     }

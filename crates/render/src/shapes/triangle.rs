@@ -42,7 +42,7 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
     let vertices = super::mesh::points(input, "vertices");
     let count = vertices.len();
     if count != 3 {
-        return Err(degenerate(input, "vertices", format!("it has {count} vertices"), "not three")
+        return Err(degenerate(input, "vertices", format!("it has {count} of three vertices"), "not three")
             .help("write three points; for more, use a `mesh`"));
     }
     let across = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);

@@ -111,23 +111,26 @@ impl Image {
     }
 
     pub(super) fn eval(&self, at: &PatternPoint) -> [f32; 4] {
-        let place = |axis: usize| at.uv[axis] * self.scale[axis] + self.offset[axis];
-        // In texels, from the top left corner.
-        let x = place(0) * f64::from(self.texels.width);
-        let y = (1.0 - place(1)) * f64::from(self.texels.height);
+        // In texels, from the bottom left corner.
+        let place = |axis: usize, texels: u32| {
+            let at = (at.uv[axis] * self.scale[axis] + self.offset[axis]) * f64::from(texels);
+            if at.is_finite() { at } else { 0.0 }
+        };
+        let (x, y) = (place(0, self.texels.width), place(1, self.texels.height));
         if !self.is_bilinear {
             return self.texel(whole(x), whole(y));
         }
         let (x, y) = (x - 0.5, y - 0.5);
         let (i, j) = (whole(x), whole(y));
-        let (s, t) = ((x - i as f64) as f32, (y - j as f64) as f32);
+        let (s, t) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
         let row = |j| lerp(self.texel(i, j), self.texel(i + 1, j), s);
         lerp(row(j), row(j + 1), t)
     }
 
-    fn texel(&self, x: i64, y: i64) -> [f32; 4] {
-        match (self.wrap.apply(x, self.texels.width), self.wrap.apply(y, self.texels.height)) {
-            (Some(x), Some(y)) => self.texels.get(x, y),
+    /// `up` counts rows from the bottom.
+    fn texel(&self, x: i64, up: i64) -> [f32; 4] {
+        match (self.wrap.apply(x, self.texels.width), self.wrap.apply(up, self.texels.height)) {
+            (Some(x), Some(up)) => self.texels.get(x, self.texels.height as usize - 1 - up),
             _ => [0.0; 4],
         }
     }
@@ -151,7 +154,7 @@ impl Wrap {
     }
 }
 
-/// The largest whole number not above `x`, far from the ends of `i64`; 0 for NaN.
+/// The largest whole number not above `x`, far from the ends of `i64`.
 fn whole(x: f64) -> i64 {
     const FAR: f64 = (1_i64 << 52) as f64;
     x.floor().clamp(-FAR, FAR) as i64

@@ -177,7 +177,7 @@ impl Textures {
         catalog: &Catalog,
         assets: &dyn Assets,
     ) -> Result<TextureNames, Vec<Diagnostic>> {
-        let names = TextureNames::number(entities, self.placed.len());
+        let names = TextureNames::numbered(entities, self.placed.len());
         let mut found = references::check(entities, &names, catalog);
         let mut placed = Vec::with_capacity(entities.len());
         for entity in entities {

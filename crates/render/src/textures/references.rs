@@ -51,7 +51,7 @@ impl TextureNames {
     }
 
     /// The number parameter `name`: as written, else its default.
-    pub fn number_source(&self, params: &Params, name: &str) -> NumberSource {
+    pub fn number(&self, params: &Params, name: &str) -> NumberSource {
         match self.written(params, name) {
             Some(number) => NumberSource::Texture(number),
             None => NumberSource::Constant(params.f32(name)),
@@ -63,7 +63,7 @@ impl TextureNames {
         self.0.get(name).copied()
     }
 
-    pub(super) fn number(entities: &[Entity], first: usize) -> Self {
+    pub(super) fn numbered(entities: &[Entity], first: usize) -> Self {
         TextureNames(entities.iter().zip(first as u32..).map(|(e, number)| (e.name.text.clone(), number)).collect())
     }
 

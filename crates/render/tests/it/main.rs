@@ -1,0 +1,7 @@
+//! Everything that the renderer promises.
+
+mod shapes;
+mod shapes_areas;
+mod shapes_cases;
+mod shapes_errors;
+mod shapes_offsets;
