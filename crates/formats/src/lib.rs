@@ -21,5 +21,5 @@ mod json;
 
 pub use assets::{FormatAssets, MeshCache};
 pub use failure::Failure;
-pub use load::{load, load_cached};
+pub use load::{load, load_cached, load_with_warnings};
 pub use paths::rebase_paths;
