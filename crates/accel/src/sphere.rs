@@ -23,7 +23,7 @@ pub fn intersect(sphere: &Sphere, ray: &PreparedRay, mut visit: impl FnMut(f32) 
     let half_b = -d.dot(to_origin);
     let nearest = to_origin + d * (half_b / a);
     let reach2 = radius2 - nearest.dot(nearest);
-    if !(reach2 > 0.0) {
+    if reach2.is_nan() || reach2 <= 0.0 {
         return;
     }
     let Some(inside) = bounds(sphere).intersect(&ray.clipped, ray.inverse) else { return };

@@ -20,7 +20,7 @@ pub fn bounds(corners: &Corners) -> Bounds3 {
     let mut b = Bounds3 { min: Vec3::ZERO, max: Vec3::ZERO };
     let mut size = 0.0_f32;
     for k in 0..3 {
-        let (x, y, z) = (corners[0][k], corners[1][k], corners[2][k]);
+        let [x, y, z] = corners.map(|c| c[k]);
         b.min[k] = least(least(x, y), z);
         b.max[k] = -least(least(-x, -y), -z);
         size = -least(-size, b.min[k] - b.max[k]);

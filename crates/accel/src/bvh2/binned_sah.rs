@@ -212,10 +212,9 @@ fn halve(references: &mut [Reference]) -> Split {
 fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) -> usize {
     let mut count = 0;
     for i in 0..references.len() {
-        let r = references[i];
-        references[i] = references[count];
-        references[count] = r;
-        count += usize::from(left(&r));
+        let goes_left = left(&references[i]);
+        references.swap(i, count);
+        count += usize::from(goes_left);
     }
     count
 }

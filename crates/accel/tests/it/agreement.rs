@@ -149,3 +149,20 @@ fn an_axis_aligned_grid_is_hit_on_every_line_and_crossing() {
     let within: Vec<Ray> = (0..33 * 33).map(|k| Ray::new(at(k) + Vec3::new(-9.0, 0.0, 2.0), Vec3::X)).collect();
     assert_eq!(assert_agreement(&scene, &within), 0, "rays within the plane");
 }
+
+/// On every platform, natively or as wasm: a changed hash is a changed definition of a hit (or fused arithmetic).
+#[test]
+fn hits_have_the_same_bits_everywhere() {
+    let mut hash = 0;
+    for seed in 0..20 {
+        let r = &mut Random::new(1000 + seed);
+        let (scene, corners) = scene(r, 60);
+        let accel = crate::common::build(AccelKind::Bvh2, &scene);
+        for _ in 0..500 {
+            let hit = crate::common::closest(&accel, &ray(r, &corners));
+            let bits = crate::common::bits(hit).unwrap_or([7; 6]);
+            hash = bits.iter().fold(hash, |h, &b| kirkas_geometry::hash::combine(h, b.into()));
+        }
+    }
+    assert_eq!(format!("{hash:016x}"), "d63610032fd77faf");
+}

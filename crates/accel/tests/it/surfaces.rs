@@ -76,3 +76,16 @@ fn a_sphere_is_left_for_good_and_met_on_its_far_side() {
         }
     }
 }
+
+#[test]
+fn a_ray_from_a_vertex_does_not_meet_that_vertex() {
+    let r = &mut Random::new(7);
+    for _ in 0..30_000 {
+        let corners = [r.cube(), r.cube(), r.cube() * 100.0];
+        let accel = build(AccelKind::BruteForce, &world(vec![triangles(&[corners])]));
+        for corner in corners {
+            let ray = Ray::new(corner, r.cube());
+            assert_eq!(closest(&accel, &ray), None, "{corners:?} {ray:?}");
+        }
+    }
+}
