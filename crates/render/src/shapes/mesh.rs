@@ -30,10 +30,12 @@
 use super::analytic::degenerate;
 use super::triangles::{PlacedMesh, TriangleSurface};
 use super::{Part, ShapeInput};
+use kirkas_geometry::hash::mix64;
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{DAffine3, DVec3, Vec2, Vec3};
 use kirkas_scene::{Diagnostic, Fallback, Kind, MeshData, MeshPart, ParamSpec, ParamType, TypeSpec};
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 /// Its table.
@@ -210,8 +212,8 @@ fn runs(parts: &[MeshPart], count: usize) -> Vec<(core::ops::Range<usize>, Optio
 fn smooth_normals(data: &MeshData) -> Vec<Vec3> {
     let split = !data.uvs.is_empty() || !data.normals.is_empty();
     let first: Vec<u32> = if split {
-        let mut seen = HashMap::with_capacity(data.positions.len());
-        // + 0.0 makes one of both zeros.
+        let mut seen = HashMap::with_capacity_and_hasher(data.positions.len(), BuildHasherDefault::<Mix>::default());
+        // Adding zero makes one of both zeros. Only looked up, never walked: the order of the map does not matter.
         let key = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
         data.positions.iter().enumerate().map(|(i, p)| *seen.entry(key(p)).or_insert(i as u32)).collect()
     } else {
@@ -230,6 +232,23 @@ fn smooth_normals(data: &MeshData) -> Vec<Vec3> {
         }
     }
     (0..data.positions.len() as u32).map(|i| sums[home(i)].normalize_or_zero().as_vec3()).collect()
+}
+
+/// A fast hash: positions are no attackers.
+#[derive(Default)]
+struct Mix(u64);
+
+impl Hasher for Mix {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for chunk in bytes.chunks(8) {
+            let word = chunk.iter().fold(0, |w, &b| w << 8 | u64::from(b));
+            self.0 = mix64(self.0 ^ word);
+        }
+    }
 }
 
 /// A list of points; empty if not written.

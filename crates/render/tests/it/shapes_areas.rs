@@ -103,9 +103,10 @@ fn check_area_and_moments(case: &Case, name: &str, transform: &DAffine3, target:
                 let from = s.position + s.normal * (0.01 * radius);
                 let ray = Ray::new(from.as_vec3(), (-s.normal).as_vec3());
                 let hits = target.all(&ray);
-                let near = hits.iter().map(|h| target.point(h, &ray)).find(|h| {
-                    (h.position - s.position).length() < 1e-5 * radius && h.normal.dot(s.normal) > 0.99
-                });
+                let near = hits
+                    .iter()
+                    .map(|h| target.point(h, &ray))
+                    .find(|h| (h.position - s.position).length() < 1e-5 * radius && h.normal.dot(s.normal) > 0.99);
                 // At an edge or apex the ray may pass by.
                 assert!(near.is_some() || i % 20 != 0 || hits.is_empty(), "{label}: {s:?} is not on it: {hits:?}");
             }

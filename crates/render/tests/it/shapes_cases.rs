@@ -22,14 +22,11 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     use std::f64::consts::PI;
     let p = Map::default;
-    let case = |type_name, params, closed, area: f64| Case {
-        type_name,
-        params,
-        closed,
-        area: (area > 0.0).then_some(area),
-    };
+    let case =
+        |type_name, params, closed, area: f64| Case { type_name, params, closed, area: (area > 0.0).then_some(area) };
     let slant = |h: f64, a: f64, b: f64| PI * (a + b) * (h * h + (a - b) * (a - b)).sqrt();
-    let vertices = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
+    let vertices =
+        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     let vertices = Value::List(vertices.iter().map(|v| Node::new(*v)).collect());
     let faces = [0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5];
     let faces = Value::List(faces.iter().map(|&i| Node::new(i64::from(i))).collect());
@@ -42,7 +39,10 @@ pub fn cases() -> Vec<Case> {
         case("disk", p(), false, PI),
         case(
             "disk",
-            p().with("center", [0.3, 0.1, 0.0]).with("normal", [1.0, -1.0, 2.0]).with("radius", 0.7).with("inner_radius", 0.3),
+            p().with("center", [0.3, 0.1, 0.0])
+                .with("normal", [1.0, -1.0, 2.0])
+                .with("radius", 0.7)
+                .with("inner_radius", 0.3),
             false,
             PI * 0.4,
         ),
@@ -58,8 +58,18 @@ pub fn cases() -> Vec<Case> {
             0.6 * PI * (0.64_f64 + 0.36 + 0.81).sqrt(),
         ),
         case("cone", p(), true, slant(1.0, 1.0, 0.0) + PI),
-        case("cone", p().with("to", [0.0, 1.5, 0.0]).with("radius", 0.4).with("top_radius", 0.7), true, slant(1.5, 0.4, 0.7) + PI * 0.65),
-        case("cone", p().with("to", [0.5, 1.0, 0.5]).with("top_radius", 0.5).with("caps", false), false, slant(1.5_f64.sqrt(), 1.0, 0.5)),
+        case(
+            "cone",
+            p().with("to", [0.0, 1.5, 0.0]).with("radius", 0.4).with("top_radius", 0.7),
+            true,
+            slant(1.5, 0.4, 0.7) + PI * 0.65,
+        ),
+        case(
+            "cone",
+            p().with("to", [0.5, 1.0, 0.5]).with("top_radius", 0.5).with("caps", false),
+            false,
+            slant(1.5_f64.sqrt(), 1.0, 0.5),
+        ),
         case("torus", p(), true, PI * PI),
         case("torus", p().with("axis", [1.0, 1.0, 0.3]).with("minor_radius", 0.9), true, 4.0 * PI * PI * 0.9),
         case("torus", p().with("major_radius", 2.0).with("minor_radius", 0.02), true, 4.0 * PI * PI * 0.04),
@@ -84,7 +94,8 @@ impl Case {
 
     /// A center and a radius that hold it, or the interesting piece of it.
     pub fn ball(&self, m: &DAffine3) -> (DVec3, f64) {
-        let bounds = self.build(*m).unwrap().iter().fold(kirkas_geometry::Bounds3::EMPTY, |b, p| b.union(p.surface.bounds()));
+        let bounds =
+            self.build(*m).unwrap().iter().fold(kirkas_geometry::Bounds3::EMPTY, |b, p| b.union(p.surface.bounds()));
         if !bounds.is_finite() {
             return (m.translation, m.matrix3.determinant().abs().cbrt());
         }

@@ -40,7 +40,11 @@ fn degenerate_parameters_are_explained() {
     check("triangle", p().with("vertices", points(&[[0.0; 3]])), "triangle `thing`: it has 1 of three vertices");
     let line = points(&[[0.0; 3], [1.0; 3], [2.0; 3]]);
     check("triangle", p().with("vertices", line), "triangle `thing`: its vertices lie on one line");
-    check("sphere", p().with("radius", 1e-60), "sphere `thing`: its radius or place, 0 at [0, 0, 0], is beyond what f32 holds");
+    check(
+        "sphere",
+        p().with("radius", 1e-60),
+        "sphere `thing`: its radius or place, 0 at [0, 0, 0], is beyond what f32 holds",
+    );
 }
 
 #[test]
