@@ -1,16 +1,29 @@
 //! The command line: reads files and arguments, shows progress and problems, writes pictures.
 //!
-//! All knowledge of light, formats and pixels lives below; only this crate knows of terminals, clocks, signals and exit codes.
+//! All knowledge of light, formats and pixels lives below; only this crate knows of terminals, clocks, signals and exit codes:
+//! 0 done, 1 failed, 2 bad usage or bad input, 3 `diff` over `--max`.
 
 mod commands;
+
+mod scene_file;
 mod disk_files;
+mod settings;
+mod conductor;
+mod checkpoint;
+mod header;
+mod parts;
+mod ranges;
+mod aov_args;
+mod pictures;
+mod aov_picture;
 mod output;
+mod stats;
 mod problem;
 mod report;
-mod scene_file;
 
 use clap::Parser;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// A ray tracer that is fast, physically right, and can explain every pixel it draws.
 #[derive(Debug, Parser)]
@@ -22,13 +35,25 @@ struct Kirkas {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    Render(commands::render::Render),
+    Render(Box<commands::render::Render>),
+    Check(commands::check::Check),
+    Convert(commands::convert::Convert),
+    Diff(commands::diff::Diff),
+    Merge(commands::merge::Merge),
+    Schema(commands::schema::Schema),
+    Completions(commands::completions::Completions),
 }
 
 fn main() -> ExitCode {
-    let kirkas = Kirkas::parse();
-    let done = match &kirkas.command {
-        Command::Render(args) => commands::render::run(args),
+    let started = Instant::now();
+    let done = match &Kirkas::parse().command {
+        Command::Render(args) => commands::render::run(args, started),
+        Command::Check(args) => commands::check::run(args),
+        Command::Convert(args) => commands::convert::run(args),
+        Command::Diff(args) => commands::diff::run(args),
+        Command::Merge(args) => commands::merge::run(args),
+        Command::Schema(args) => commands::schema::run(args),
+        Command::Completions(args) => commands::completions::run(args),
     };
     match done {
         Ok(outcome) => ExitCode::from(outcome.code()),

@@ -87,3 +87,14 @@ fn beside(path: &Path, what: &str) -> PathBuf {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!(".{name}.{}.{what}", std::process::id()))
 }
+
+/// Write to stdout. A reader that has seen enough is no problem.
+pub fn print_out(bytes: &[u8]) -> Result<(), Problem> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Problem::failed(Diagnostic::error("cannot-write", format!("stdout cannot be written: {e}"))))
+        }
+        _ => Ok(()),
+    }
+}

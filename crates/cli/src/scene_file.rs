@@ -3,7 +3,8 @@
 use crate::disk_files::DiskFiles;
 use crate::problem::Problem;
 use kirkas_formats::assets::MeshCache;
-use kirkas_formats::{Failure, FormatAssets, load_cached};
+use kirkas_formats::load::load_with_warnings;
+use kirkas_formats::{Failure, FormatAssets};
 use kirkas_scene::files::{FileAccess, Limits};
 use kirkas_scene::{Description, Diagnostic};
 use std::path::{Path, PathBuf};
@@ -13,12 +14,12 @@ use std::sync::Arc;
 pub struct SceneFile {
     /// What it says.
     pub description: Description,
+    /// What its format could not say exactly.
+    pub warnings: Vec<Diagnostic>,
     /// Reads and records.
     pub files: FileAccess,
     /// The folder below which everything lies, canonical.
     pub root: PathBuf,
-    /// The scene's path from there.
-    pub name: String,
     meshes: Arc<MeshCache>,
     /// What the user calls the root folder: "" or ending in `/`.
     prefix: String,
@@ -30,8 +31,8 @@ impl SceneFile {
         let (root, name, prefix) = locate(path, root)?;
         let files = FileAccess::new(Box::new(DiskFiles::new(root.clone())), Limits::default());
         let meshes = Arc::new(MeshCache::default());
-        let description = load_cached(&files, &name, &meshes).map_err(|f| Problem::from(told_to_user(f, &prefix)))?;
-        Ok(SceneFile { description, files, root, name, meshes, prefix })
+        let (description, warnings) = load_with_warnings(&files, &name, &meshes).map_err(|f| Problem::from(told_to_user(f, &prefix)))?;
+        Ok(SceneFile { description, warnings, files, root, meshes, prefix })
     }
 
     /// Answers the renderer's questions.

@@ -1,3 +1,9 @@
 //! One file per command.
 
+pub mod check;
+pub mod completions;
+pub mod convert;
+pub mod diff;
+pub mod merge;
 pub mod render;
+pub mod schema;

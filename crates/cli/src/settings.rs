@@ -1,0 +1,88 @@
+//! Values of the scene that the command line sets: each is a small text with a place of its own, so that what is wrong with it
+//! is underlined like a line of the scene.
+
+use crate::problem::Problem;
+use crate::scene_file::SceneFile;
+use kirkas_formats::toml::apply_override;
+use kirkas_scene::{Kind, Map, Name, Node, Span, Value};
+use std::path::PathBuf;
+
+/// The scene and what is changed in it.
+#[derive(Debug, clap::Args)]
+pub struct SceneArgs {
+    /// Scene: .toml, .txt (MIT 6.837), or a mesh to look at: .obj, .ply
+    pub scene: PathBuf,
+    /// Set any value of the scene: `-D integrator.max_depth=3 -D lights.lamp.intensity=2`
+    #[arg(short = 'D', value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Folder below which the scene may read files; its own by default
+    #[arg(long, value_name = "DIR")]
+    pub root: Option<PathBuf>,
+}
+
+/// Told by texts of their own in a picture's header.
+const TOLD_APART: [&str; 4] = ["sampler.samples", "sampler.seed", "film.exposure", "film.tone"];
+
+/// Sets values and remembers them.
+pub struct Settings<'a> {
+    scene: &'a mut SceneFile,
+    lines: Vec<String>,
+}
+
+impl<'a> Settings<'a> {
+    /// Of this scene.
+    pub fn new(scene: &'a mut SceneFile) -> Self {
+        Settings { scene, lines: Vec::new() }
+    }
+
+    /// The value at `path`, as the option `flag` gave it.
+    pub fn flag(&mut self, flag: &str, path: &str, value: impl Into<Value>) -> Result<(), Problem> {
+        let value = value.into();
+        let text = match &value {
+            Value::Int(i) => i.to_string(),
+            Value::Float(f) => f.to_string(),
+            Value::Text(t) => t.clone(),
+            other => format!("{other:?}"),
+        };
+        let description = &mut self.scene.description;
+        let source = description.sources.add(flag, &text);
+        let span = Span::new(source, 0, text.len());
+        self.lines.push(format!("{path}={text}"));
+        description.set(path, span, Node::spanned(value, span)).map_err(|d| self.scene.failure(vec![d]).into())
+    }
+
+    /// Another type for a single kind: what was said of the old one is forgotten.
+    pub fn type_of(&mut self, flag: &str, kind: Kind, name: &str) -> Result<(), Problem> {
+        let entity = self.scene.description.single_mut(kind);
+        if entity.type_name.text != name {
+            entity.params = Map::default();
+        }
+        self.flag(flag, &format!("{}.type", kind.section()), name)
+    }
+
+    /// All shutters open at `time`, for as long as they did.
+    pub fn time(&mut self, time: f64) {
+        for camera in self.scene.description.all_mut(Kind::Camera) {
+            let [open, close] = camera.params.get("shutter").and_then(|n| n.numbers::<2>()).unwrap_or_default();
+            camera.params.set(Name::new("shutter"), Node::new([time, time + (close - open)]));
+        }
+        self.lines.push(format!("time={time}"));
+    }
+
+    /// What `-D` says.
+    pub fn overrides(&mut self, texts: &[String]) -> Result<(), Problem> {
+        for text in texts {
+            apply_override(&mut self.scene.description, text).map_err(|d| Problem::from(self.scene.failure(vec![d])))?;
+            if let Some((path, value)) = text.split_once('=') {
+                self.lines.push(format!("{}={}", path.trim(), value.trim()));
+            }
+        }
+        Ok(())
+    }
+
+    /// One line per value set, but for those that a header tells by themselves.
+    pub fn lines(self) -> String {
+        let is_told_apart = |line: &String| TOLD_APART.iter().any(|p| line.split('=').next() == Some(p));
+        self.lines.into_iter().filter(|line| !is_told_apart(line)).collect::<Vec<_>>().join("\n")
+    }
+}
