@@ -27,7 +27,11 @@ pub const SPEC: TypeSpec = TypeSpec {
             .unit("pixels")
             .range((0.0, 32.0)),
         ParamSpec::number("exposure", 0.0, "Brightness of PNG output; EXR is not touched.").unit("stops").range(ANY),
-        ParamSpec::choice("tone", &["linear", "filmic"], "Tone curve of PNG output."),
+        ParamSpec::choice(
+            "tone",
+            &["linear", "filmic", "aces", "raw"],
+            "Tone curve of PNG output; `raw` writes the number times 255, without the sRGB curve.",
+        ),
         ParamSpec::new("camera", ParamType::Reference(Kind::Camera), Fallback::Absent, "Camera to use; absent = the first."),
         ParamSpec::bool("light_groups", false, "Also keep one layer per light group."),
     ],
