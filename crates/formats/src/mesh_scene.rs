@@ -1,4 +1,4 @@
-//! A scene around a bare mesh: seen from a three-quarter view, on a round floor, under a large soft lamp.
+//! A scene around a bare mesh: seen from a three-quarter view, on a round floor, under two large soft lamps.
 //!
 //! Everything is measured in the radius of the mesh's bounding box, so that a mesh in metres and one in microns look the same.
 
@@ -17,10 +17,37 @@ const ASPECT: f64 = 4.0 / 3.0;
 const FILL: f64 = 0.82;
 /// From the mesh to the eye: from the front right, a little from above.
 const TO_EYE: DVec3 = DVec3::new(0.55, 0.38, 1.0);
-/// From the mesh to the lamp: from the left, from above, from the front.
-const TO_LAMP: DVec3 = DVec3::new(-0.75, 1.15, 0.8);
-/// Distance and radius of the lamp, in radii of the mesh.
-const LAMP: (f64, f64) = (7.0, 1.4);
+/// A round lamp that looks at the mesh; lengths in radii of the mesh.
+struct Lamp {
+    name: &'static str,
+    /// From the mesh to the lamp.
+    towards: DVec3,
+    distance: f64,
+    radius: f64,
+    color: [f64; 3],
+    /// How bright a white surface at the mesh looks that faces the lamp.
+    brightness: f64,
+}
+
+/// One from the left, from above, from the front; a weak wide one from the other side.
+const LAMPS: [Lamp; 2] = [
+    Lamp {
+        name: "key",
+        towards: DVec3::new(-0.75, 1.15, 0.8),
+        distance: 7.0,
+        radius: 1.4,
+        color: [1.0, 0.96, 0.9],
+        brightness: 0.9,
+    },
+    Lamp {
+        name: "fill",
+        towards: DVec3::new(1.0, 0.55, 0.5),
+        distance: 9.0,
+        radius: 3.5,
+        color: [0.8, 0.9, 1.0],
+        brightness: 0.2,
+    },
+];
 
 /// Read the mesh `path` and describe a scene around it.
 pub fn mesh_scene(files: &FileAccess, path: &str, meshes: &MeshCache) -> Result<Description, Failure> {
@@ -52,35 +79,20 @@ fn describe(scene: &mut Description, path: &str, source: SourceId, mesh: &MeshDa
         .with("fov", FOV);
     scene.add(Kind::Camera, Entity::new("camera", "perspective", camera))?;
 
-    // Light: a lamp with soft shadows, a weak light from the other side, and a little from everywhere.
-    let (lamp_distance, lamp_radius) = LAMP;
-    let to_lamp = TO_LAMP.normalize();
-    let brightness = 0.85 * lamp_distance * lamp_distance / (lamp_radius * lamp_radius);
-    let lamp = Map::default().with("radiance", [1.0, 0.96, 0.9]).with("intensity", brightness).with("samples", 8_i64);
-    let disk = Map::default()
-        .with("center", (center + to_lamp * (lamp_distance * radius)).to_array())
-        .with("normal", (-to_lamp).to_array())
-        .with("radius", lamp_radius * radius)
-        .with("material", "lamp");
-    let fill =
-        Map::default().with("direction", [-1.0, -0.45, -0.35]).with("intensity", 0.16).with("color", [0.8, 0.9, 1.0]);
-    scene.add(Kind::Light, Entity::new("fill", "directional", fill))?;
-    scene.add(
-        Kind::Light,
-        Entity::new("ambient", "ambient", Map::default().with("color", [0.85, 0.92, 1.0]).with("intensity", 0.14)),
-    )?;
+    // Light: two lamps with soft shadows, and a little from everywhere.
+    let ambient = Map::default().with("color", [0.85, 0.92, 1.0]).with("intensity", 0.12);
+    scene.add(Kind::Light, Entity::new("ambient", "ambient", ambient))?;
     scene.add(Kind::Background, Entity::new("", "gradient", Map::default().with("stops", background())))?;
 
     // Put the mesh on a floor that it does not quite touch.
     let floor = Map::default()
         .with("center", [center.x, low.y - 1e-3 * radius, center.z])
         .with("normal", [0.0, 1.0, 0.0])
-        .with("radius", 12.0 * radius)
+        .with("radius", 40.0 * radius)
         .with("material", "floor");
     let mut thing = Map::default();
     let name = path.rsplit('/').next().unwrap_or(path);
     thing.set(kirkas_scene::Name::new("file"), Node::spanned(name, Span::new(source, 0, 0)));
-    scene.add(Kind::Material, Entity::new("lamp", "emitter", lamp))?;
     scene.add(Kind::Material, Entity::new("floor", "lambert", Map::default().with("reflectance", 0.42)))?;
     if mesh.materials.is_empty() {
         thing = thing.with("material", "clay");
@@ -88,7 +100,21 @@ fn describe(scene: &mut Description, path: &str, source: SourceId, mesh: &MeshDa
     }
     scene.add(Kind::Object, Entity::new("mesh", "mesh", thing))?;
     scene.add(Kind::Object, Entity::new("floor", "disk", floor))?;
-    scene.add(Kind::Object, Entity::new("lamp", "disk", disk))
+    LAMPS.iter().try_for_each(|lamp| add_lamp(scene, lamp, center, radius))
+}
+
+fn add_lamp(scene: &mut Description, lamp: &Lamp, center: DVec3, unit: f64) -> Result<(), Diagnostic> {
+    let towards = lamp.towards.normalize();
+    // A disk of radiance L and radius r that faces a white surface from far away makes it look L (r / distance)^2 bright.
+    let intensity = lamp.brightness * (lamp.distance / lamp.radius) * (lamp.distance / lamp.radius);
+    let emitter = Map::default().with("radiance", lamp.color).with("intensity", intensity).with("samples", 8_i64);
+    let disk = Map::default()
+        .with("center", (center + towards * (lamp.distance * unit)).to_array())
+        .with("normal", (-towards).to_array())
+        .with("radius", lamp.radius * unit)
+        .with("material", lamp.name);
+    scene.add(Kind::Material, Entity::new(lamp.name, "emitter", emitter))?;
+    scene.add(Kind::Object, Entity::new(lamp.name, "disk", disk))
 }
 
 /// How far away the eye must be for every vertex to lie inside the picture.
@@ -106,5 +132,6 @@ fn fitting_distance(mesh: &MeshData, center: DVec3, to_eye: DVec3) -> f64 {
 
 fn background() -> Value {
     let stop = |at: f64, color: [f64; 3]| Node::new(vec![Node::new(at), Node::new(color)]);
-    Value::List(vec![stop(-1.0, [0.30, 0.30, 0.31]), stop(0.0, [0.42, 0.44, 0.47]), stop(1.0, [0.16, 0.24, 0.38])])
+    // Dark at the horizon, as the floor is there; brighter above, for what reflects.
+    Value::List(vec![stop(-1.0, [0.10, 0.10, 0.10]), stop(0.0, [0.085, 0.09, 0.1]), stop(1.0, [0.34, 0.42, 0.54])])
 }
