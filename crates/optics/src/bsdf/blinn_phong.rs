@@ -49,7 +49,7 @@
 //! Models", EGSR 2005.
 
 use super::phong::square_to_power_cosine;
-use super::phong_body::{self, Highlight, ROWS};
+use super::phong_body::{self, Highlight, ROWS, power};
 use crate::fresnel::reflect;
 use core::f32::consts::PI;
 use kirkas_geometry::Vec3;
@@ -76,7 +76,7 @@ pub struct HalfVector;
 
 impl Highlight for HalfVector {
     fn cosine(wo: Vec3, wi: Vec3) -> f32 {
-        (wo + wi).normalize().z.clamp(0.0, 1.0)
+        (wo + wi).normalize().z.min(1.0)
     }
 
     fn normalisation(q: f32) -> f32 {
@@ -85,7 +85,7 @@ impl Highlight for HalfVector {
 
     fn pdf(q: f32, wo: Vec3, wi: Vec3) -> f32 {
         let h = (wo + wi).normalize();
-        (q + 1.0) / (2.0 * PI) * pow_f32(h.z.clamp(0.0, 1.0), q) / (4.0 * wo.dot(h))
+        (q + 1.0) / (2.0 * PI) * power(Self::cosine(wo, wi), q) / (4.0 * wo.dot(h))
     }
 
     fn sample(q: f32, wo: Vec3, u: (f32, f32)) -> Vec3 {

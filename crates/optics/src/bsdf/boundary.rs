@@ -74,7 +74,7 @@ impl Split {
     pub(crate) fn transmission_scale(&self, eta_o: f32, eta_i: f32, mode: Mode) -> f32 {
         match (self.fresnel, mode) {
             (Fresnel::Constant, Mode::Radiance) => 1.0,
-            (Fresnel::Constant, Mode::Importance) => square(eta_i / eta_o),
+            (Fresnel::Constant, Mode::Importance) => square(eta_o / eta_i),
             (_, Mode::Radiance) => square(eta_o / eta_i),
             (_, Mode::Importance) => 1.0,
         }

@@ -38,9 +38,9 @@
 //! ## Limits
 //!
 //! `normalized` conserves energy only where `diffuse + specular <= 1` (and `reflect`, `transmit` come on top); its highlight
-//! loses what falls below the horizon at grazing angles. `classic` breaks energy conservation (`specular` 1 at exponent 1
-//! reflects up to twice what it gets, and without bound in measure towards grazing light) and reciprocity, since the cosine of
-//! the light is missing from its highlight. With constant `fresnel`, `reflect` and `transmit` hold at every angle; under total
+//! loses what falls below the horizon at grazing angles. `classic` breaks energy conservation (with `specular` 1 and a
+//! low exponent it gives back up to twice what it gets) and reciprocity, since the cosine of the light is missing from its
+//! highlight: grazing light shows as strongly as steep light. With constant `fresnel`, `reflect` and `transmit` hold at every angle; under total
 //! reflection only `reflect` remains, as in the course.
 //!
 //! ## References
@@ -48,7 +48,7 @@
 //! B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975. E. P. Lafortune & Y. D. Willems, "Using the
 //! Modified Phong Reflectance Model for Physically Based Rendering", Report CW197, K.U. Leuven, 1994, equation 4.
 
-use super::phong_body::{self, Highlight, ROWS};
+use super::phong_body::{self, Highlight, ROWS, power};
 use core::f32::consts::PI;
 use kirkas_geometry::elementary::{pow_f32, sin_cos_f32};
 use kirkas_geometry::{Frame, Vec3};
@@ -74,7 +74,7 @@ pub struct Mirrored;
 
 impl Highlight for Mirrored {
     fn cosine(wo: Vec3, wi: Vec3) -> f32 {
-        mirrored(wo).dot(wi).clamp(0.0, 1.0)
+        mirrored(wo).dot(wi).min(1.0)
     }
 
     fn normalisation(q: f32) -> f32 {
@@ -82,7 +82,7 @@ impl Highlight for Mirrored {
     }
 
     fn pdf(q: f32, wo: Vec3, wi: Vec3) -> f32 {
-        (q + 1.0) / (2.0 * PI) * pow_f32(Self::cosine(wo, wi), q)
+        (q + 1.0) / (2.0 * PI) * power(Self::cosine(wo, wi), q)
     }
 
     fn sample(q: f32, wo: Vec3, u: (f32, f32)) -> Vec3 {

@@ -7,6 +7,7 @@ use crate::{Light, Medium};
 use core::f32::consts::PI;
 use core::marker::PhantomData;
 use kirkas_geometry::Vec3;
+use kirkas_geometry::elementary::pow_f32;
 use kirkas_geometry::warp::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Fallback, ParamSpec, ParamType, Params};
@@ -34,7 +35,7 @@ const TRANSMIT: usize = slot(ROWS, "transmit");
 
 /// A highlight. All directions are on the +z side.
 pub trait Highlight {
-    /// The cosine that is raised to the exponent; not negative.
+    /// The cosine that is raised to the exponent; at most 1, negative behind the lobe.
     fn cosine(wo: Vec3, wi: Vec3) -> f32;
     /// What `cosine^q` is multiplied by so that no more light leaves than came.
     fn normalisation(q: f32) -> f32;
@@ -164,9 +165,9 @@ impl<H: Highlight> Body<H> {
     }
 }
 
-/// `cosine^exponent`; `0^0` is 1.
-fn power(cosine: f32, exponent: f32) -> f32 {
-    kirkas_geometry::elementary::pow_f32(cosine, exponent)
+/// `cosine^exponent`, and 0 behind the lobe even where the exponent is 0.
+pub(super) fn power(cosine: f32, exponent: f32) -> f32 {
+    if cosine > 0.0 { pow_f32(cosine, exponent) } else { 0.0 }
 }
 
 fn upper(v: Vec3, wo: Vec3) -> Vec3 {

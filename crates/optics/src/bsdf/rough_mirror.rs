@@ -23,7 +23,8 @@
 //!
 //! ## Limits
 //!
-//! Light that would bounce among the facets is lost, so very rough mirrors come out too dark (by about 40 % at roughness 1).
+//! Light that would bounce among the facets is lost, so rough mirrors come out too dark: seen straight on by 1 % at
+//! roughness 0.1, 8 % at 0.25, 31 % at 0.5, 69 % at 1.
 //! Roughness below 0.001 acts as 0.001: use `mirror`.
 //!
 //! ## References

@@ -1,0 +1,208 @@
+//! Parameter sets for every model, and models made from them.
+
+use kirkas_geometry::Vec3;
+use kirkas_optics::bsdf::texture_rows;
+use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, SPECS};
+use kirkas_scene::{Catalog, Entity, Kind, Map, ParamType, Params, TypeSpec, Value};
+
+/// A model with parameters, between two media.
+pub struct Case {
+    pub label: String,
+    pub model: BsdfModel,
+    pub bsdf: Bsdf,
+    pub interface: Interface,
+    /// Conserves energy and is reciprocal.
+    pub is_physical: bool,
+    /// Reflectance and transmittance add up to no more than 1.
+    pub is_bounded: bool,
+}
+
+impl Case {
+    /// The refractive index on `w`'s side.
+    pub fn eta(&self, w: Vec3) -> f64 {
+        f64::from(self.interface.seen_from(w).0)
+    }
+}
+
+pub fn parse(pairs: &[(&str, Value)]) -> Map {
+    pairs.iter().fold(Map::default(), |m, (n, v)| m.with(n, v.clone()))
+}
+
+/// Make a model from its parameters alone, `outside` the refractive index above it.
+pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
+    let catalog = Catalog { types: SPECS.iter().collect(), common: Vec::new() };
+    let entity = Entity::new("it", type_name, params.clone());
+    let params = Params::new(&entity, Kind::Material, &catalog).expect("a listed model");
+    let model = BsdfModel::prepare(&params).expect("a listed model");
+    let rgb = |v: f64| [v as f32; 3];
+    let slots: Vec<Light> = texture_rows(model.spec())
+        .map(|row| {
+            let value = match row.ty {
+                ParamType::NumberTexture => rgb(params.number(row.name)),
+                _ => params.color(row.name).map(|x| x as f32),
+            };
+            Lanes::RGB.parameter(row, value)
+        })
+        .collect();
+    let below = model.medium().map_or(outside, |m| m.ior);
+    let interface = Interface { eta_above: outside, eta_below: below };
+    let bsdf = model.at(&slots, interface);
+    let classic = params.entity.params.get("form").and_then(|n| n.text()) == Some("classic");
+    let constant_pane =
+        params.entity.params.get("fresnel").map_or(type_name.contains("phong"), |n| n.text() == Some("constant"))
+            && model.medium().is_some();
+    let label = format!("{type_name} {:?}", entity.params.iter().map(|(n, v)| (&n.text, &v.value)).collect::<Vec<_>>());
+    Case { label, model, bsdf, interface, is_physical: !classic && !constant_pane, is_bounded: !classic }
+}
+
+/// At least three sets for each type; a listed model without them fails.
+fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
+    let n = |name, v: f64| (name, Value::Float(v));
+    let c = |name, v: [f64; 3]| (name, Value::from(v));
+    let t = |name, v: &str| (name, Value::from(v));
+    match type_name {
+        "lambert" => {
+            vec![(vec![], 1.0), (vec![c("reflectance", [0.9, 0.2, 0.05])], 1.0), (vec![n("reflectance", 1.0)], 1.33)]
+        }
+        "phong" | "blinn_phong" => vec![
+            (vec![c("diffuse", [0.5, 0.4, 0.1]), n("specular", 0.3), n("exponent", 20.0)], 1.0),
+            (vec![n("diffuse", 0.0), c("specular", [0.9, 0.7, 0.1]), n("exponent", 200.0)], 1.0),
+            (vec![n("diffuse", 0.0), n("specular", 1.0), n("exponent", 0.0)], 1.0),
+            (vec![n("diffuse", 0.0), n("specular", 1.0), n("exponent", 1.5)], 1.0),
+            (vec![n("diffuse", 0.4), n("specular", 0.5), n("exponent", 8.0), t("form", "classic")], 1.0),
+            (
+                vec![n("diffuse", 0.2), n("specular", 0.1), n("exponent", 5.0), n("reflect", 0.3), n("transmit", 0.4)],
+                1.2,
+            ),
+            (
+                vec![
+                    n("diffuse", 0.1),
+                    n("specular", 0.1),
+                    n("reflect", 0.5),
+                    n("transmit", 0.8),
+                    t("fresnel", "exact"),
+                ],
+                1.0,
+            ),
+            (
+                vec![n("diffuse", 0.1), n("specular", 0.1), n("reflect", 0.5), n("ior", 2.0), t("fresnel", "schlick")],
+                1.0,
+            ),
+        ],
+        "mirror" => vec![
+            (vec![], 1.0),
+            (vec![c("reflectance", [0.9, 0.2, 0.05])], 1.0),
+            (vec![c("reflectance", [0.9, 0.2, 0.0]), t("fresnel", "schlick")], 1.0),
+        ],
+        "dielectric" => vec![
+            (vec![], 1.0),
+            (vec![n("ior", 1.1), t("fresnel", "schlick"), c("transmittance", [0.3, 0.2, 0.9])], 1.33),
+            (vec![n("ior", 2.4), n("reflectance", 0.5)], 1.0),
+            (vec![n("reflectance", 0.25), n("transmittance", 0.5), t("fresnel", "constant")], 1.0),
+        ],
+        "rough_mirror" => vec![
+            (vec![n("reflectance", 1.0), n("roughness", 0.5)], 1.0),
+            (vec![c("reflectance", [0.9, 0.2, 0.0]), n("roughness", 0.15), t("fresnel", "schlick")], 1.0),
+            (vec![n("roughness", 1.0)], 1.0),
+        ],
+        "rough_dielectric" => vec![
+            (vec![n("roughness", 0.3)], 1.0),
+            (
+                vec![n("ior", 1.1), n("roughness", 0.5), t("fresnel", "schlick"), c("transmittance", [0.3, 0.2, 0.9])],
+                1.33,
+            ),
+            (vec![n("ior", 2.4), n("roughness", 0.15), n("reflectance", 0.5)], 1.0),
+            (vec![n("reflectance", 0.25), n("transmittance", 0.5), n("roughness", 0.8), t("fresnel", "constant")], 1.0),
+        ],
+        "emitter" => vec![
+            (vec![], 1.0),
+            (vec![n("intensity", 5.0)], 1.0),
+            (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
+        ],
+        other => panic!("no parameter sets for `{other}`: add at least three here"),
+    }
+}
+
+/// Every listed model with every one of its sets.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for spec in SPECS {
+        let sets = parameter_sets(spec.name);
+        assert!(sets.len() >= 3, "`{}` wants three parameter sets", spec.name);
+        all.extend(sets.iter().map(|(pairs, outside)| build(spec.name, &parse(pairs), *outside)));
+    }
+    all
+}
+
+/// Five directions above, the last one grazing, and two below.
+pub fn outgoing() -> Vec<Vec3> {
+    let mut all = kirkas_testkit::furnace::directions_above(5, 0.04);
+    all.push(Vec3::new(0.3, -0.5, -0.8).normalize());
+    all.push(Vec3::new(-0.9, 0.1, -0.15).normalize());
+    all
+}
+
+#[test]
+fn the_list_holds_each_model_once_with_the_rows_of_the_catalogue() {
+    let names: Vec<&str> = SPECS.iter().map(|s| s.name).collect();
+    assert_eq!(
+        names,
+        ["lambert", "phong", "blinn_phong", "mirror", "dielectric", "rough_mirror", "rough_dielectric", "emitter"]
+    );
+    assert!(SPECS.iter().all(|s| s.kind == Kind::Material && !s.doc.is_empty()));
+    let rows = |i: usize| SPECS[i].params.iter().map(|p| p.name).collect::<Vec<_>>();
+    assert_eq!(rows(0), ["reflectance"]);
+    let phong =
+        ["diffuse", "specular", "exponent", "form", "ambient", "reflect", "transmit", "ior", "fresnel", "priority"];
+    assert_eq!((rows(1), rows(2)), (phong.to_vec(), phong.to_vec()));
+    assert_eq!(rows(4), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority"]);
+    assert_eq!(rows(6), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "roughness"]);
+    let textured: Vec<&str> = texture_rows(&SPECS[1]).map(|r| r.name).collect();
+    assert_eq!(textured, ["diffuse", "specular", "exponent", "ambient", "reflect", "transmit"]);
+}
+
+#[test]
+fn a_type_that_is_no_material_is_no_model() {
+    static OTHER: TypeSpec = TypeSpec { kind: Kind::Material, name: "velvet", doc: "", params: &[] };
+    let catalog = Catalog { types: vec![&OTHER], common: Vec::new() };
+    let entity = Entity::new("it", "velvet", Map::default());
+    assert!(BsdfModel::prepare(&Params::new(&entity, Kind::Material, &catalog).unwrap()).is_none());
+}
+
+#[test]
+fn every_manual_head_has_its_parts() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/bsdf/");
+    for spec in SPECS {
+        let text = std::fs::read_to_string(format!("{folder}{}.rs", spec.name)).unwrap();
+        for part in ["## Parameters", "## Example", "## Limits", "## References"] {
+            assert!(text.contains(&format!("//! {part}")), "{} lacks {part}", spec.name);
+        }
+        assert!(text.starts_with(&format!("//! # {}\n", spec.name)) && text.contains("//! ```toml"));
+        for row in spec.params {
+            assert!(text.contains(&format!("//! | `{}` |", row.name)), "{} does not explain `{}`", spec.name, row.name);
+        }
+    }
+}
+
+#[test]
+fn media_are_read_from_the_rows() {
+    let glass =
+        parse(&[("ior", Value::Float(1.7)), ("priority", Value::Int(3)), ("absorption", Value::from([0.1, 0.2, 0.3]))]);
+    for name in ["dielectric", "rough_dielectric"] {
+        let m = build(name, &glass, 1.0).model.medium().unwrap();
+        assert_eq!((m.ior, m.priority, m.absorption), (1.7, 3, [0.1, 0.2, 0.3]));
+    }
+    for name in ["phong", "blinn_phong"] {
+        let with = |v: Value| {
+            build(name, &parse(&[("transmit", v), ("ior", Value::Float(1.3)), ("priority", Value::Int(2))]), 1.0)
+        };
+        let m = with(Value::Float(0.5)).model.medium().unwrap();
+        assert_eq!((m.ior, m.priority, m.absorption), (1.3, 2, [0.0; 3]));
+        assert!(with(Value::from("a_texture")).model.medium().is_some());
+        assert!(with(Value::Float(0.0)).model.medium().is_none());
+        assert!(build(name, &Map::default(), 1.0).model.medium().is_none());
+    }
+    for name in ["lambert", "mirror", "rough_mirror", "emitter"] {
+        assert!(build(name, &Map::default(), 1.0).model.medium().is_none());
+    }
+}
