@@ -4,7 +4,9 @@
 use crate::problem::Problem;
 use crate::scene_file::SceneFile;
 use kirkas_formats::toml::apply_override;
-use kirkas_scene::{Kind, Map, Name, Node, Span, Value};
+use kirkas_render::catalog;
+use kirkas_scene::validate::validate;
+use kirkas_scene::{Diagnostic, Kind, Map, Name, Node, Span, Value};
 use std::path::PathBuf;
 
 /// The scene and what is changed in it.
@@ -27,16 +29,17 @@ const TOLD_APART: [&str; 4] = ["sampler.samples", "sampler.seed", "film.exposure
 pub struct Settings<'a> {
     scene: &'a mut SceneFile,
     lines: Vec<String>,
+    errors: Vec<Diagnostic>,
 }
 
 impl<'a> Settings<'a> {
     /// Of this scene.
     pub fn new(scene: &'a mut SceneFile) -> Self {
-        Settings { scene, lines: Vec::new() }
+        Settings { scene, lines: Vec::new(), errors: Vec::new() }
     }
 
     /// The value at `path`, as the option `flag` gave it.
-    pub fn flag(&mut self, flag: &str, path: &str, value: impl Into<Value>) -> Result<(), Problem> {
+    pub fn flag(&mut self, flag: &str, path: &str, value: impl Into<Value>) {
         let value = value.into();
         let text = match &value {
             Value::Int(i) => i.to_string(),
@@ -48,16 +51,16 @@ impl<'a> Settings<'a> {
         let source = description.sources.add(flag, &text);
         let span = Span::new(source, 0, text.len());
         self.lines.push(format!("{path}={text}"));
-        description.set(path, span, Node::spanned(value, span)).map_err(|d| self.scene.failure(vec![d]).into())
+        self.errors.extend(description.set(path, span, Node::spanned(value, span)).err());
     }
 
     /// Another type for a single kind: what was said of the old one is forgotten.
-    pub fn type_of(&mut self, flag: &str, kind: Kind, name: &str) -> Result<(), Problem> {
+    pub fn type_of(&mut self, flag: &str, kind: Kind, name: &str) {
         let entity = self.scene.description.single_mut(kind);
         if entity.type_name.text != name {
             entity.params = Map::default();
         }
-        self.flag(flag, &format!("{}.type", kind.section()), name)
+        self.flag(flag, &format!("{}.type", kind.section()), name);
     }
 
     /// All shutters open at `time`, for as long as they did.
@@ -70,19 +73,23 @@ impl<'a> Settings<'a> {
     }
 
     /// What `-D` says.
-    pub fn overrides(&mut self, texts: &[String]) -> Result<(), Problem> {
+    pub fn overrides(&mut self, texts: &[String]) {
         for text in texts {
-            apply_override(&mut self.scene.description, text).map_err(|d| Problem::from(self.scene.failure(vec![d])))?;
+            self.errors.extend(apply_override(&mut self.scene.description, text).err());
             if let Some((path, value)) = text.split_once('=') {
                 self.lines.push(format!("{}={}", path.trim(), value.trim()));
             }
         }
-        Ok(())
     }
 
-    /// One line per value set, but for those that a header tells by themselves.
-    pub fn lines(self) -> String {
+    /// Everything that is wrong, in the options and in the scene as they changed it; else one line per value set, but for those
+    /// that a header tells by themselves.
+    pub fn finish(mut self) -> Result<String, Problem> {
+        if !self.errors.is_empty() {
+            self.errors.extend(validate(&self.scene.description, &catalog()).into_iter().filter(Diagnostic::is_error));
+            return Err(self.scene.failure(self.errors).into());
+        }
         let is_told_apart = |line: &String| TOLD_APART.iter().any(|p| line.split('=').next() == Some(p));
-        self.lines.into_iter().filter(|line| !is_told_apart(line)).collect::<Vec<_>>().join("\n")
+        Ok(self.lines.into_iter().filter(|line| !is_told_apart(line)).collect::<Vec<_>>().join("\n"))
     }
 }

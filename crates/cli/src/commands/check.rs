@@ -28,7 +28,9 @@ pub struct Check {
 /// Do it.
 pub fn run(args: &Check) -> Result<Outcome, Problem> {
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
-    Settings::new(&mut scene).overrides(&args.scene.set)?;
+    let mut settings = Settings::new(&mut scene);
+    settings.overrides(&args.scene.set);
+    settings.finish()?;
     let prepared = prepare(&scene.description, &scene.assets(), &Options::default());
     let found = match &prepared {
         Ok(p) => p.warnings.clone(),

@@ -34,7 +34,9 @@ pub fn run(args: &Convert) -> Result<Outcome, Problem> {
     }
     crate::output::check_writable(&args.out)?;
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
-    Settings::new(&mut scene).overrides(&args.scene.set)?;
+    let mut settings = Settings::new(&mut scene);
+    settings.overrides(&args.scene.set);
+    settings.finish()?;
     let catalog = catalog();
 
     // A scene that is wrong stays wrong in another format.

@@ -191,35 +191,35 @@ fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
 fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     let mut set = Settings::new(scene);
     if let Some(name) = &args.integrator {
-        set.type_of("--integrator", Kind::Integrator, name)?;
+        set.type_of("--integrator", Kind::Integrator, name);
     }
     if let Some(name) = &args.accel {
-        set.type_of("--accel", Kind::Accelerator, name)?;
+        set.type_of("--accel", Kind::Accelerator, name);
     }
     if let Some((width, height)) = args.size {
-        set.flag("--size", "film.width", width)?;
-        set.flag("--size", "film.height", height)?;
+        set.flag("--size", "film.width", width);
+        set.flag("--size", "film.height", height);
     }
     if let Some(n) = args.spp {
-        set.flag("--spp", "sampler.samples", n)?;
+        set.flag("--spp", "sampler.samples", n);
     }
     if let Some(n) = args.seed {
-        set.flag("--seed", "sampler.seed", n)?;
+        set.flag("--seed", "sampler.seed", n);
     }
     if let Some(name) = &args.camera {
-        set.flag("--camera", "film.camera", name.as_str())?;
+        set.flag("--camera", "film.camera", name.as_str());
     }
     if let Some(stops) = args.exposure {
-        set.flag("--exposure", "film.exposure", stops)?;
+        set.flag("--exposure", "film.exposure", stops);
     }
     if let Some(name) = &args.tone {
-        set.flag("--tone", "film.tone", name.as_str())?;
+        set.flag("--tone", "film.tone", name.as_str());
     }
     if let Some(time) = args.time {
         set.time(time);
     }
-    set.overrides(&args.scene.set)?;
-    Ok(set.lines())
+    set.overrides(&args.scene.set);
+    set.finish()
 }
 
 fn first_film(args: &Render, header: &Header, prepared: &Prepared, samples: &Range<u32>) -> Result<Film, Problem> {
