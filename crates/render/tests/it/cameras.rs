@@ -163,11 +163,13 @@ fn a_moving_camera_is_halfway_at_half_time() {
 
 #[test]
 fn a_transform_moves_the_placed_camera_and_motion_moves_that() {
-    let shift = vec![Node::new(Map::default().with("translate", [1.0, 0.0, 0.0]))];
-    let still = vec![key(0.0, "rotate", [0.0, 1.0, 0.0, 90.0])];
-    let c = camera("perspective", Map::default().with("transform", shift).with("motion", still));
-    // (0, 0, 5) moves to (1, 0, 5), and a quarter turn about y takes z to x and x to -z.
-    assert_near(c.ray(&at(320.0, 240.0), SIZE).origin, [5.0, 0.0, -1.0]);
+    let turn = vec![Node::new(Map::default().with("rotate", [0.0, 1.0, 0.0, 90.0]))];
+    let still = vec![key(0.0, "translate", [0.0, 0.0, 1.0])];
+    let c = camera("perspective", Map::default().with("transform", turn).with("motion", still));
+    // A quarter turn about y takes (0, 0, 5) to (5, 0, 0); then it moves by 1 along z.
+    let ray = c.ray(&at(320.0, 240.0), SIZE);
+    assert_near(ray.origin, [5.0, 0.0, 1.0]);
+    assert_near(ray.direction, [-1.0, 0.0, 0.0]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_render::film::filter::{FILTERS, Filter};
 
-const N: usize = 1024;
+const N: usize = 512;
 
 fn filter(name: &str) -> Filter {
     Filter::new(name, None).expect("a listed filter")
