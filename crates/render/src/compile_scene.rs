@@ -39,6 +39,8 @@ pub struct Prepared {
     pub integrator: Box<dyn Integrator>,
     /// Pixel filter.
     pub filter: Filter,
+    /// Moves every sample on the film, in pixels.
+    pub shift: [f64; 2],
     /// Which sample points.
     pub sampler: SamplerKind,
     /// Samples per pixel.
@@ -71,6 +73,7 @@ impl Prepared {
             scene: &self.scene,
             integrator: &*self.integrator,
             filter: &self.filter,
+            shift: self.shift,
             sampler: self.sampler,
             seed: self.seed,
             resolution: self.film.size,
@@ -98,6 +101,7 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     Ok(Prepared {
         integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
         filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
+        shift: p.vector2("shift"),
         sampler: SamplerKind::from_name(s.spec().name).unwrap_or(SamplerKind::Sobol),
         samples: s.integer("samples") as u32,
         seed: s.integer("seed") as u64,

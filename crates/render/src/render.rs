@@ -26,6 +26,8 @@ pub struct Renderer<'a> {
     pub sampler: SamplerKind,
     /// Which of all pictures.
     pub seed: u64,
+    /// Moves every sample on the film, in pixels, x right, y down.
+    pub shift: [f64; 2],
     /// The whole image, in pixels.
     pub resolution: (u32, u32),
     /// Light groups that are kept apart; 1 = all in one.
@@ -140,8 +142,8 @@ impl Renderer<'_> {
         let (uses_lens, uses_time) = (camera.uses_lens(), close > open);
         let sample = CameraSample {
             film: (
-                f64::from(id.x) + 0.5 + f64::from(place.offset.0),
-                f64::from(id.y) + 0.5 + f64::from(place.offset.1),
+                f64::from(id.x) + 0.5 + f64::from(place.offset.0) + self.shift[0],
+                f64::from(id.y) + 0.5 + f64::from(place.offset.1) + self.shift[1],
             ),
             lens: if uses_lens { sampler.pair(LENS) } else { (0.5, 0.5) },
             time: if uses_time { open + (close - open) * f64::from(sampler.one(TIME)) } else { open },

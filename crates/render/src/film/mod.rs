@@ -26,6 +26,14 @@ pub const SPEC: TypeSpec = TypeSpec {
         ParamSpec::new("filter_radius", ParamType::Number, Fallback::Absent, "Half width; absent = the filter's own.")
             .unit("pixels")
             .range((0.0, 32.0)),
+        ParamSpec::new(
+            "shift",
+            ParamType::Vector2,
+            Fallback::Vector2([0.0, 0.0]),
+            "Moves every sample on the film, x right, y down; the course's programs sampled the lower left corner: [-0.5, 0.5].",
+        )
+        .unit("pixels")
+        .range((-16.0, 16.0)),
         ParamSpec::number("exposure", 0.0, "Brightness of PNG output; EXR is not touched.").unit("stops").range(ANY),
         ParamSpec::choice(
             "tone",
