@@ -47,7 +47,7 @@ pub const SPEC: TypeSpec = TypeSpec {
             &["opaque", "transparent", "none"],
             "`opaque`: any surface blocks; `transparent`: clear ones tint, without bending; `none`: no shadow rays.",
         ),
-        ParamSpec::bool("shade_back", true, "Shade surfaces seen from behind as if their normal pointed to the viewer."),
+        ParamSpec::bool("shade_back", true, "Shade surfaces seen from behind as well; without it they are black, as in the course."),
         ParamSpec::integer("glossy_samples", 4, (1.0, 65_536.0), "Rays per glossy lobe at the first bounce, 1 deeper.")
             .range((1.0, 65_536.0)),
         ParamSpec::number("ambient", 1.0, "Scales all ambient light.").range(NOT_NEGATIVE),
@@ -131,22 +131,22 @@ impl Integrator for Whitted {
             out.contributions.push((path.throughput * emitted, hit.emission_group));
         }
 
-        let (bsdf, eta_scale) = self.bsdf(scene, &path, hit);
+        let bsdf = self.bsdf(scene, &path, hit);
         let wo_world = -path.ray.direction.normalize();
-        let mut wo = hit.frame.to_local(wo_world);
+        let wo = hit.frame.to_local(wo_world);
         let is_boundary = material.medium.is_some();
 
-        self.add_ambient(scene, &path, &bsdf, out);
-        if !self.shade_back && wo.z < 0.0 && !is_boundary {
-            // The course's rule: the normal stays as modelled, whatever side is seen.
-            wo.z = -wo.z;
+        if !self.shade_back && !hit.is_front && !is_boundary {
+            // The course's rule: backs are black.
+            out.end = Some(PathEnd::Absorbed);
+            return;
         }
+        self.add_ambient(scene, &path, &bsdf, out);
         self.light_directly(scene, &path, sampler, hit, &bsdf, wo, out);
 
         // Follow mirror and refraction rays.
         if bsdf.lobes().intersects(LobeSet::DELTA | bsdf.traced_lobes()) {
-            let wo = hit.frame.to_local(wo_world);
-            self.branch(&path, sampler, hit, &bsdf, wo, is_boundary, eta_scale, out);
+            self.branch(&path, sampler, hit, &bsdf, wo, is_boundary, out);
         } else {
             out.end = Some(PathEnd::Absorbed);
         }
@@ -157,8 +157,8 @@ impl Integrator for Whitted {
 const MOST_PASSED: u32 = 256;
 
 impl Whitted {
-    /// The surface's scattering, with the bodies on both its sides, and 1 (a place for radiance scaling by index).
-    fn bsdf(&self, scene: &Scene, path: &PathState, hit: &SurfaceHit) -> (Bsdf, f32) {
+    /// The surface's scattering, with the bodies on both its sides.
+    fn bsdf(&self, scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
         let material = scene.material(hit);
         let interface = match material.medium {
             Some(inside) => {
@@ -166,9 +166,9 @@ impl Whitted {
                 let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
                 Interface { eta_above: outside, eta_below: inside.ior }
             }
-            None => Interface { eta_above: 1.0, eta_below: 1.0 },
+            None => Interface::VACUUM,
         };
-        (scene.bsdf(hit, interface), 1.0)
+        scene.bsdf(hit, interface)
     }
 
     fn add_ambient(&self, scene: &Scene, path: &PathState, bsdf: &Bsdf, out: &mut StepOutput) {
@@ -242,7 +242,6 @@ impl Whitted {
         bsdf: &Bsdf,
         wo: Vec3,
         is_boundary: bool,
-        scale: f32,
         out: &mut StepOutput,
     ) {
         if path.depth >= self.max_depth {
@@ -252,7 +251,7 @@ impl Whitted {
         let before = out.paths.len();
         for s in bsdf.delta_branches(wo, Mode::Radiance) {
             let kind = if s.lobe.is_transmission() { RayKind::Refracted } else { RayKind::Reflected };
-            self.send(path, hit, s.wi, s.lobe, s.weight() * scale, kind, 0, is_boundary, out);
+            self.send(path, hit, s.wi, s.lobe, s.weight(), kind, 0, is_boundary, out);
         }
         let count = if path.depth == 0 { self.glossy_samples } else { 1 };
         for lobe in bsdf.traced_lobes().iter() {
@@ -260,7 +259,7 @@ impl Whitted {
             for i in 0..count {
                 let u = sampler.pair_of(purpose, i, count);
                 if let Some(s) = bsdf.sample(wo, 0.0, u, LobeSet::of(lobe), Mode::Radiance) {
-                    let weight = s.weight() * (scale / count as f32);
+                    let weight = s.weight() * (1.0 / count as f32);
                     self.send(path, hit, s.wi, s.lobe, weight, RayKind::Glossy, i, is_boundary, out);
                 }
             }
