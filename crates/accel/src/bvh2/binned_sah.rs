@@ -316,3 +316,29 @@ fn sweep<const N: usize>(boxes: &[Box4; N], counts: &[u32; N]) -> (f32, usize) {
 fn cost(count: u32, around: &Box4) -> f32 {
     if count == 0 { f32::INFINITY } else { count as f32 * around.half_area() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes of which every split peels off a few, begun so deep that the room for it runs out.
+    #[test]
+    fn near_the_limit_subtrees_are_halved_into_the_room_that_is_left() {
+        let cube = |i: i32| Bounds3 { min: Vec3::splat(2_f32.powi(i)), max: Vec3::splat(2_f32.powi(i) * 1.1) };
+        let peels = |depth: usize| {
+            let mut references: Vec<_> = (-50..50).map(|i| Reference::new(&cube(i), 0, (i + 50) as u32)).collect();
+            let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
+            let mut nodes = Vec::new();
+            let root = subtree(&mut references, 0, whole, depth, &mut nodes);
+            levels(&nodes, root)
+        };
+        assert!(peels(0) > 10);
+        assert!(peels(MAX_DEPTH - 10) <= 10);
+        assert!(peels(MAX_DEPTH - 7) <= 7);
+    }
+
+    fn levels(nodes: &[Node], child: Child) -> usize {
+        let below = |c: &Child| 1 + levels(nodes, *c);
+        if child.is_leaf() { 0 } else { nodes[child.index()].children.iter().map(below).max().unwrap_or(0) }
+    }
+}
