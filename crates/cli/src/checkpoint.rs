@@ -19,20 +19,20 @@ pub struct Checkpoint {
     header: Header,
     start: u32,
     last: Instant,
+    /// From one checkpoint to the next, if they are cheap.
+    usual: Duration,
     wait: Duration,
 }
 
-/// From one checkpoint to the next.
-const USUAL: Duration = Duration::from_secs(20);
-/// At the longest, however dear they are.
+/// From one checkpoint to the next at the longest, however dear they are.
 const LONGEST: Duration = Duration::from_secs(55);
 /// Writing takes at most this part of the time, if it can be.
 const SHARE: u32 = 20;
 
 impl Checkpoint {
-    /// At `path`, for samples from `start` on.
-    pub fn new(path: &Path, header: &Header, start: u32) -> Self {
-        Checkpoint { path: path.into(), header: header.clone(), start, last: Instant::now(), wait: USUAL }
+    /// At `path`, for samples from `start` on, about every `usual` seconds.
+    pub fn new(path: &Path, header: &Header, start: u32, usual: Duration) -> Self {
+        Checkpoint { path: path.into(), header: header.clone(), start, last: Instant::now(), usual, wait: usual }
     }
 
     /// Write one if it is time.
@@ -51,7 +51,7 @@ impl Checkpoint {
         let bytes = write_exr(&image, ExrCompression::None).map_err(fail)?;
         write_atomically(&self.path, &bytes)?;
         self.last = Instant::now();
-        self.wait = (begun.elapsed() * SHARE).clamp(USUAL, LONGEST);
+        self.wait = (begun.elapsed() * SHARE).clamp(self.usual, LONGEST.max(self.usual));
         Ok(())
     }
 }
@@ -73,7 +73,10 @@ pub fn load(path: &Path, header: &Header, layout: &FilmLayout, samples: &Range<u
     }
     if !differences.is_empty() {
         let message = format!("`{}` is a checkpoint of another picture", path.display());
-        let help = format!("these differ: {}; take them back, or begin anew with another --checkpoint", differences.join("; "));
+        let help = format!(
+            "these differ: {}; take them back, or begin anew with another --checkpoint",
+            differences.join("; ")
+        );
         return Err(Problem::input(Diagnostic::error("other-checkpoint", message).help(help)));
     }
     let most = taken(&part.film).1;

@@ -27,8 +27,12 @@ const UNITS: &str = "linear, scene-referred, Rec.709 primaries; 1.0 is one unit 
 const PREFIX: &str = "kirkas.";
 
 /// Texts that must agree between pictures that are added, and what is said where they do not.
-const MUST_AGREE: [(&str, &str); 4] =
-    [("version", "the version of Kirkas"), ("scene_hash", "the scene"), ("overrides", "the overrides"), ("seed", "the seed")];
+const MUST_AGREE: [(&str, &str); 4] = [
+    ("version", "the version of Kirkas"),
+    ("scene_hash", "the scene"),
+    ("overrides", "the overrides"),
+    ("seed", "the seed"),
+];
 
 /// The texts, by name without `kirkas.`. An absent one is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +42,8 @@ impl Header {
     /// What is known before the first ray.
     pub fn new(scene: &str, files: &FileAccess, overrides: &str, seed: u64) -> Self {
         let hex = |hash: [u8; 32]| hash.iter().map(|b| format!("{b:02x}")).collect::<String>();
-        let lines: Vec<String> = files.record().into_iter().map(|(path, hash)| format!("{}  {path}", hex(hash))).collect();
+        let lines: Vec<String> =
+            files.record().into_iter().map(|(path, hash)| format!("{}  {path}", hex(hash))).collect();
         let mut header = Header::default();
         header.set("version", env!("CARGO_PKG_VERSION"));
         header.set("argv", command_line());
@@ -107,7 +112,11 @@ impl Header {
 
     fn changed_files(&self, other: &Header) -> Vec<String> {
         let files = |h: &Header| -> Texts {
-            h.get("files").lines().filter_map(|l| l.split_once("  ")).map(|(hash, path)| (path.into(), hash.into())).collect()
+            h.get("files")
+                .lines()
+                .filter_map(|l| l.split_once("  "))
+                .map(|(hash, path)| (path.into(), hash.into()))
+                .collect()
         };
         let (a, b) = (files(self), files(other));
         let mut found: Vec<String> =

@@ -5,21 +5,22 @@
 
 mod commands;
 
-mod scene_file;
-mod disk_files;
-mod settings;
-mod conductor;
-mod checkpoint;
-mod header;
-mod parts;
-mod ranges;
 mod aov_args;
-mod pictures;
 mod aov_picture;
+mod checkpoint;
+mod conductor;
+mod disk_files;
+mod header;
+mod input;
 mod output;
-mod stats;
+mod parts;
+mod pictures;
 mod problem;
+mod ranges;
 mod report;
+mod scene_file;
+mod settings;
+mod stats;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -63,7 +63,9 @@ pub fn check_writable(path: &Path) -> Result<(), Problem> {
 
 fn unwritable(path: &Path, why: impl std::fmt::Display) -> Problem {
     let message = format!("`{}` cannot be written: {why}", path.display());
-    Problem::input(Diagnostic::error("cannot-write", message).help("choose a folder that exists and that you may write to"))
+    Problem::input(
+        Diagnostic::error("cannot-write", message).help("choose a folder that exists and that you may write to"),
+    )
 }
 
 /// Write `bytes` to `path` in one step.
@@ -78,7 +80,9 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     write().map_err(|e| {
         let _ = fs::remove_file(&part);
         let message = format!("`{}` cannot be written: {e}", path.display());
-        Problem::failed(Diagnostic::error("cannot-write", message).help("make room on the disk or choose another folder"))
+        Problem::failed(
+            Diagnostic::error("cannot-write", message).help("make room on the disk or choose another folder"),
+        )
     })
 }
 

@@ -1,6 +1,7 @@
 //! Pictures that keep their integers: partial pictures, merged ones, checkpoints.
 
 use crate::header::Header;
+use crate::input::read_file;
 use crate::problem::Problem;
 use crate::ranges::SampleRanges;
 use kirkas_images::{Image, read_exr};
@@ -9,6 +10,9 @@ use kirkas_render::film::part::read_part;
 use kirkas_scene::Diagnostic;
 use std::ops::Range;
 use std::path::Path;
+
+/// The first bytes of an EXR file.
+pub const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// A picture with its integers.
 pub struct Part {
@@ -23,17 +27,14 @@ pub struct Part {
 impl Part {
     /// Read one.
     pub fn read(path: &Path) -> Result<Self, Problem> {
-        let bytes = std::fs::read(path).map_err(|e| {
-            let message = match e.kind() {
-                std::io::ErrorKind::NotFound => format!("there is no file `{}`", path.display()),
-                _ => format!("`{}` cannot be read: {e}", path.display()),
-            };
-            Problem::input(Diagnostic::error("file-not-found", message).help("check the path"))
-        })?;
+        let bytes = read_file(path)?;
         let cure = "write it with `kirkas render SCENE --samples A..B -o PART.exr` or `--checkpoint FILE`";
         let bad = |why: String| {
             Problem::input(Diagnostic::error("not-a-part", format!("`{}`: {why}", path.display())).help(cure))
         };
+        if !bytes.starts_with(&EXR) {
+            return Err(bad("it is not an EXR picture, and no other keeps the integers".into()));
+        }
         let image: Image = read_exr(&bytes).map_err(|e| bad(e.to_string()))?;
         let film = read_part(&image).map_err(|e| bad(e.to_string()))?;
         let header = Header::of_image(&image);
@@ -53,7 +54,8 @@ pub fn tell_samples(header: &mut Header, film: &Film, start: u32) -> Range<u32> 
     let (least, most) = taken(film);
     let range = start..start.saturating_add(least);
     header.set("samples", SampleRanges::one(range.clone()).to_string());
-    let unfinished = if most > least { format!("{}..{}", range.end, start.saturating_add(most)) } else { String::new() };
+    let unfinished =
+        if most > least { format!("{}..{}", range.end, start.saturating_add(most)) } else { String::new() };
     header.set("unfinished", unfinished);
     let invalid = film.invalid_samples();
     header.set("invalid", if invalid > 0 { invalid.to_string() } else { String::new() });

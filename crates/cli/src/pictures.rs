@@ -6,7 +6,9 @@ use crate::header::Header;
 use crate::output::{PictureFile, PictureFormat, write_atomically};
 use crate::problem::Problem;
 use kirkas_geometry::elementary::pow;
-use kirkas_images::{ExrCompression, ImageError, RgbImage, Texts, ToneCurve, to_srgb8, write_exr, write_hdr, write_png8};
+use kirkas_images::{
+    ExrCompression, ImageError, RgbImage, Texts, ToneCurve, to_srgb8, write_exr, write_hdr, write_png8,
+};
 use kirkas_render::Film;
 use kirkas_render::film::image::Depth;
 use kirkas_render::film::part::write_part;
@@ -52,8 +54,9 @@ impl Development {
     /// `OUT.depth.png` beside `OUT.png`.
     pub fn aov_files(&self, files: &[PictureFile]) -> Vec<(PathBuf, &AovArg)> {
         let flat = files.iter().filter(|f| f.format != PictureFormat::Exr);
-        let mut all: Vec<_> =
-            flat.flat_map(|f| self.aovs.iter().map(|a| (f.path.with_extension(format!("{}.png", a.name)), a))).collect();
+        let mut all: Vec<_> = flat
+            .flat_map(|f| self.aovs.iter().map(|a| (f.path.with_extension(format!("{}.png", a.name)), a)))
+            .collect();
         all.sort_by(|a, b| a.0.cmp(&b.0));
         all.dedup_by(|a, b| a.0 == b.0);
         all

@@ -64,12 +64,16 @@ impl Shown {
         };
         let (here, elsewhere): (Vec<_>, Vec<_>) = labels.into_iter().partition(|l| l.0.source == main);
         let text = sources.get(main);
-        let source = text.filter(|s| !s.text.is_empty()).map(|s| NamedSource::new(&s.path, s.text.clone()));
+        // A label at the very end needs a line to stand in.
+        let whole_lines = |t: &str| if t.ends_with('\n') { t.to_string() } else { format!("{t}\n") };
+        let source = text.filter(|s| !s.text.is_empty()).map(|s| NamedSource::new(&s.path, whole_lines(&s.text)));
         if let (None, Some(binary)) = (&source, text) {
             diagnostic.message = format!("{}: {}", binary.path, diagnostic.message);
         }
         let labels = match &source {
-            Some(_) => here.iter().enumerate().map(|(i, l)| label(i == 0, l, text.map_or(0, |t| t.text.len()))).collect(),
+            Some(_) => {
+                here.iter().enumerate().map(|(i, l)| label(i == 0, l, text.map_or(0, |t| t.text.len()))).collect()
+            }
             None => Vec::new(),
         };
         let beside = |(span, words): (Span, String)| {
@@ -104,6 +108,7 @@ impl miette::Diagnostic for Shown {
 
     fn severity(&self) -> Option<miette::Severity> {
         Some(match self.diagnostic.severity {
+            _ if self.diagnostic.code.is_empty() => miette::Severity::Advice,
             Severity::Error => miette::Severity::Error,
             Severity::Warning => miette::Severity::Warning,
         })
@@ -118,7 +123,8 @@ impl miette::Diagnostic for Shown {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        (!self.labels.is_empty()).then(|| Box::new(self.labels.iter().cloned()) as Box<dyn Iterator<Item = LabeledSpan>>)
+        (!self.labels.is_empty())
+            .then(|| Box::new(self.labels.iter().cloned()) as Box<dyn Iterator<Item = LabeledSpan>>)
     }
 
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {

@@ -1,6 +1,7 @@
 //! A scene file on the disk, opened: the root folder below which it may read, and its description.
 
 use crate::disk_files::DiskFiles;
+use crate::input::cannot_read;
 use crate::problem::Problem;
 use kirkas_formats::assets::MeshCache;
 use kirkas_formats::load::load_with_warnings;
@@ -31,7 +32,8 @@ impl SceneFile {
         let (root, name, prefix) = locate(path, root)?;
         let files = FileAccess::new(Box::new(DiskFiles::new(root.clone())), Limits::default());
         let meshes = Arc::new(MeshCache::default());
-        let (description, warnings) = load_with_warnings(&files, &name, &meshes).map_err(|f| Problem::from(told_to_user(f, &prefix)))?;
+        let (description, warnings) =
+            load_with_warnings(&files, &name, &meshes).map_err(|f| Problem::from(told_to_user(f, &prefix)))?;
         Ok(SceneFile { description, warnings, files, root, meshes, prefix })
     }
 
@@ -53,33 +55,26 @@ impl SceneFile {
 
 /// Root folder, path from there, and what the user calls the root folder.
 fn locate(path: &Path, root: Option<&Path>) -> Result<(PathBuf, String, String), Problem> {
-    let cannot = |path: &Path, e: std::io::Error| {
-        let message = match e.kind() {
-            std::io::ErrorKind::NotFound => format!("there is no file `{}`", path.display()),
-            _ => format!("`{}` cannot be read: {e}", path.display()),
-        };
-        let near = near_file(path).map(|n| format!("did you mean `{n}`?"));
-        Problem::input(Diagnostic::error("file-not-found", message).help(near.unwrap_or("check the path".into())))
-    };
     if path.is_dir() {
         return Err(Problem::input(
-            Diagnostic::error("not-a-file", format!("`{}` is a folder", path.display())).help("name a scene file in it"),
+            Diagnostic::error("not-a-file", format!("`{}` is a folder", path.display()))
+                .help("name a scene file in it"),
         ));
     }
-    let full = path.canonicalize().map_err(|e| cannot(path, e))?;
+    let full = path.canonicalize().map_err(|e| cannot_read(path, &e))?;
     let own = full.parent().unwrap_or(Path::new("/")).to_path_buf();
     let Some(asked) = root else {
         // The scene's own name, not that of a file that it is a link to: its extension tells the format.
         let given = path.file_name().unwrap_or_default();
         let (folder, name) = match path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p }) {
-            Some(parent) if path.is_symlink() => (parent.canonicalize().map_err(|e| cannot(path, e))?, given),
+            Some(parent) if path.is_symlink() => (parent.canonicalize().map_err(|e| cannot_read(path, &e))?, given),
             _ => (own, full.file_name().unwrap_or_default()),
         };
         let shown = path.to_string_lossy().replace('\\', "/");
         let prefix = shown.rfind('/').map_or(String::new(), |i| shown[..=i].to_string());
         return Ok((folder, name.to_string_lossy().into_owned(), prefix));
     };
-    let root = asked.canonicalize().map_err(|e| cannot(asked, e))?;
+    let root = asked.canonicalize().map_err(|e| cannot_read(asked, &e))?;
     let Ok(inner) = full.strip_prefix(&root) else {
         return Err(Problem::input(
             Diagnostic::error("file-outside", format!("`{}` does not lie in `{}`", path.display(), asked.display()))
@@ -88,16 +83,6 @@ fn locate(path: &Path, root: Option<&Path>) -> Result<(PathBuf, String, String),
     };
     let shown = asked.to_string_lossy().trim_end_matches('/').to_string() + "/";
     Ok((root.clone(), inner.to_string_lossy().replace('\\', "/"), if shown == "./" { String::new() } else { shown }))
-}
-
-/// The name in the same folder that is nearest to a misspelt one.
-fn near_file(path: &Path) -> Option<String> {
-    let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p })?;
-    let names: Vec<String> =
-        std::fs::read_dir(folder).ok()?.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-    let wanted = path.file_name()?.to_string_lossy().into_owned();
-    let near = kirkas_scene::diagnostic::nearest(&wanted, names.iter().map(String::as_str))?;
-    Some(path.with_file_name(near).display().to_string())
 }
 
 /// Paths as the user wrote them, and the cure that only the command line knows.

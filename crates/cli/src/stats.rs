@@ -32,7 +32,8 @@ pub fn stats_json(
     let text = |name: &str| texts.get(name).cloned().unwrap_or_default();
     let crop = film.layout.crop;
     let invalid = film.tiles.iter().flat_map(|t| &t.invalid);
-    let shown: Vec<Value> = warnings.iter().map(|w| json!({ "code": w.code, "message": w.message, "help": w.help })).collect();
+    let shown: Vec<Value> =
+        warnings.iter().map(|w| json!({ "code": w.code, "message": w.message, "help": w.help })).collect();
     json!({
         "version": text("kirkas.version"),
         "argv": std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect::<Vec<_>>(),

@@ -36,11 +36,13 @@ pub fn run(args: &Check) -> Result<Outcome, Problem> {
         Ok(p) => p.warnings.clone(),
         Err(errors) => errors.clone(),
     };
-    let Failure { sources, diagnostics } = scene.failure([scene.warnings.clone(), found, scene.mesh_warnings()].concat());
+    let Failure { sources, diagnostics } =
+        scene.failure([scene.warnings.clone(), found, scene.mesh_warnings()].concat());
     report::print(&sources, &diagnostics);
     let errors = diagnostics.iter().filter(|d| d.is_error()).count();
     let warnings = diagnostics.len() - errors;
-    let mut text = format!("{}: {}, {}\n", args.scene.scene.display(), counted(errors, "error"), counted(warnings, "warning"));
+    let mut text =
+        format!("{}: {}, {}\n", args.scene.scene.display(), counted(errors, "error"), counted(warnings, "warning"));
     if let Ok(p) = &prepared {
         text += &summary(&scene, &p.scene);
     }

@@ -30,7 +30,9 @@ pub struct Convert {
 pub fn run(args: &Convert) -> Result<Outcome, Problem> {
     if args.out.extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml")) {
         let message = format!("`{}`: scenes are written as `.toml` only", args.out.display());
-        return Err(Problem::input(Diagnostic::error("unknown-format", message).help("give OUT the extension `.toml`")));
+        return Err(Problem::input(
+            Diagnostic::error("unknown-format", message).help("give OUT the extension `.toml`"),
+        ));
     }
     crate::output::check_writable(&args.out)?;
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
@@ -75,7 +77,13 @@ fn reads_back(text: &str) -> Option<Description> {
 }
 
 /// From paths below `root` to paths as seen from `folder`. Those that climb need a root folder when they are read again.
-fn move_paths(d: &mut Description, catalog: &Catalog, root: &Path, folder: &Path, may_climb: bool) -> Result<(), Problem> {
+fn move_paths(
+    d: &mut Description,
+    catalog: &Catalog,
+    root: &Path,
+    folder: &Path,
+    may_climb: bool,
+) -> Result<(), Problem> {
     for kind in Kind::ALL {
         for entity in d.all_mut(kind) {
             let Some(spec) = catalog.find(kind, &entity.type_name.text) else { continue };

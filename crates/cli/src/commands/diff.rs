@@ -1,10 +1,12 @@
 //! `kirkas diff`: how far two pictures are from each other.
 
+use crate::input::read_file;
 use crate::output::{check_writable, print_out, write_atomically};
+use crate::parts::EXR;
 use crate::problem::{Outcome, Problem};
 use kirkas_images::heat::write_heat_png;
 use kirkas_images::metrics::{Difference, Metric, fraction_within, max_difference};
-use kirkas_images::{DecodedImage, Image, Pixels, RgbImage, ToneCurve, Window, decode, read_exr, to_srgb8};
+use kirkas_images::{DecodedImage, Image, ImageError, Pixels, RgbImage, ToneCurve, Window, decode, read_exr, to_srgb8};
 use kirkas_scene::Diagnostic;
 use std::path::{Path, PathBuf};
 
@@ -48,7 +50,7 @@ pub fn run(args: &Diff) -> Result<Outcome, Problem> {
     let metric = Metric::from_name(&args.metric).unwrap_or(Metric::Rmse);
     let (mut a, mut b) = (Picture::read(&args.a)?, Picture::read(&args.b)?);
     Picture::meet(&mut a, &mut b);
-    let bad = |e: kirkas_images::ImageError| Problem::input(Diagnostic::error("cannot-compare", e.to_string()));
+    let bad = |e: ImageError| Problem::input(Diagnostic::error("cannot-compare", e.to_string()));
     let difference = metric.compare(&a.rgb, &b.rgb).map_err(bad)?;
 
     let mut text = format!("{} {}\n", metric.name(), difference.score);
@@ -87,15 +89,14 @@ struct Picture {
 
 impl Picture {
     fn read(path: &Path) -> Result<Self, Problem> {
-        let about = |why: String, cure: &str| {
-            Problem::input(Diagnostic::error("bad-picture", format!("`{}`: {why}", path.display())).help(cure))
-        };
-        let bytes = std::fs::read(path).map_err(|e| about(e.to_string(), "check the path"))?;
+        let bad =
+            |e: ImageError| Problem::input(Diagnostic::error("bad-picture", format!("`{}`: {e}", path.display())));
+        let bytes = read_file(path)?;
         let hint = path.extension().map(|e| e.to_string_lossy().into_owned());
-        let image = decode(&bytes, hint.as_deref()).map_err(|e| about(e.to_string(), "compare pictures of light"))?;
+        let image = decode(&bytes, hint.as_deref()).map_err(bad)?;
         let whole = Window { x: 0, y: 0, width: image.width, height: image.height };
         // An EXR also says of which image it is a part, and its colours are multiplied by alpha already.
-        let exr: Option<Image> = bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]).then(|| read_exr(&bytes).ok()).flatten();
+        let exr: Option<Image> = bytes.starts_with(&EXR).then(|| read_exr(&bytes).ok()).flatten();
         let rgb = if exr.is_some() { image.rgb() } else { over_black(&image) };
         let codes = match &image.pixels {
             Pixels::Srgb8(codes) => codes.iter().flat_map(|c| [c[0], c[1], c[2]]).collect(),

@@ -5,6 +5,7 @@ use crate::output::{PictureFile, check_writable};
 use crate::parts::Part;
 use crate::pictures::Development;
 use crate::problem::{Outcome, Problem};
+use kirkas_render::film::part::PartError;
 use kirkas_scene::Diagnostic;
 use std::path::{Path, PathBuf};
 
@@ -66,7 +67,8 @@ fn read_whole(path: &Path) -> Result<Part, Problem> {
     match part.header.get("unfinished") {
         "" => Ok(part),
         range => {
-            let message = format!("`{}` was stopped within a pass: some pixels also have samples {range}", path.display());
+            let message =
+                format!("`{}` was stopped within a pass: some pixels also have samples {range}", path.display());
             let help = "finish it first: render it again with --checkpoint and --resume";
             Err(Problem::input(Diagnostic::error("unfinished-part", message).help(help)))
         }
@@ -83,8 +85,14 @@ fn add(sum: &mut Part, part: &Part, first: &Path, path: &Path) -> Result<(), Pro
         return Err(unfit(differences.join("; ")));
     }
     sum.samples = sum.samples.union(&part.samples).map_err(|twice| {
-        let message = format!("samples {}..{} of `{}` are in another part already", twice.start, twice.end, path.display());
-        Problem::input(Diagnostic::error("overlapping-parts", message).help("give each sample once; leave this part out"))
+        let message =
+            format!("samples {}..{} of `{}` are in another part already", twice.start, twice.end, path.display());
+        Problem::input(
+            Diagnostic::error("overlapping-parts", message).help("give each sample once; leave this part out"),
+        )
     })?;
-    sum.film.merge(&part.film).map_err(|e| unfit(e.to_string()))
+    sum.film.merge(&part.film).map_err(|e| match e {
+        PartError::Different(what) => unfit(what),
+        other => unfit(other.to_string()),
+    })
 }

@@ -72,6 +72,9 @@ pub struct Render {
     /// Go on from the checkpoint
     #[arg(long, requires = "checkpoint")]
     resume: bool,
+    /// From one checkpoint to the next
+    #[arg(long, value_name = "SECONDS", hide = true, default_value_t = 20)]
+    checkpoint_seconds: u64,
     /// Extra layers: depth[:NEAR:FAR], normals, albedo, position, object_id, material_id, sample_count, variance
     #[arg(long, value_name = "NAME[:ARGS],...", value_delimiter = ',')]
     aov: Vec<String>,
@@ -128,7 +131,8 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let mut film = first_film(args, &header, &prepared, &samples)?;
 
     // Render.
-    let checkpoint = args.checkpoint.as_ref().map(|path| Checkpoint::new(path, &header, samples.start));
+    let usual = Duration::from_secs(args.checkpoint_seconds);
+    let checkpoint = args.checkpoint.as_ref().map(|path| Checkpoint::new(path, &header, samples.start, usual));
     let wanted = samples.end - samples.start;
     let pixels = prepared.film.crop.area() as u64;
     let done: u64 = film.tiles.iter().flat_map(|t| &t.counts).map(|c| u64::from(c.taken)).sum();
@@ -173,7 +177,9 @@ fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
     for (i, place) in places.iter().enumerate() {
         if places[..i].contains(place) {
             let message = format!("`{}` would be written twice", place.display());
-            return Err(Problem::input(Diagnostic::error("same-file", message).help("give each file a name of its own")));
+            return Err(Problem::input(
+                Diagnostic::error("same-file", message).help("give each file a name of its own"),
+            ));
         }
         check_writable(place)?;
     }

@@ -1,0 +1,10 @@
+//! The command line as a user meets it: the built program, run on small scenes.
+
+mod common;
+
+mod aovs;
+mod bits;
+mod commands;
+mod errors;
+mod faults;
+mod interruptions;
