@@ -64,7 +64,7 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
     };
     match (params.text("file"), params.has("vertices")) {
         (Some(file), false) => {
-            let data = input.assets.mesh(input.source, file)?;
+            let data = input.assets.mesh(input.source, file).map_err(|d| d.at(params.span("file"), "named here"))?;
             build_mesh(Source::File(data), normals, input)
         }
         (None, true) => {
