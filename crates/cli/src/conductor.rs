@@ -1,9 +1,12 @@
 //! The command line's say in a render: the progress bar, Ctrl-C, the time limit, checkpoints.
 
 use crate::checkpoint::Checkpoint;
+use crate::parts::taken;
+use crate::problem::Problem;
 use crate::report;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use kirkas_render::{Control, Film};
+use kirkas_render::{Control, Film, Renderer, Statistics};
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -11,50 +14,71 @@ use std::time::{Duration, Instant};
 /// How often the user, or the system, asked to stop.
 static STOPS: AtomicU32 = AtomicU32::new(0);
 
+/// A pass doubles the samples until it takes so many.
+const MOST_SAMPLES: u32 = 16;
+/// A pass is no longer than this, if it can be: then it is soon time for a checkpoint, or to stop.
+const LONGEST_PASS: Duration = Duration::from_secs(10);
+
 /// Watches a render.
 pub struct Conductor {
     bar: ProgressBar,
     deadline: Option<Instant>,
-    passes: Mutex<Passes>,
     checkpoint: Option<Mutex<Checkpoint>>,
 }
 
-/// When the running pass began, and how many samples each pixel had then.
-struct Passes {
-    begun: Instant,
-    taken: u32,
-    ended_by_clock: bool,
-}
-
 impl Conductor {
-    /// `total` samples of pixels, of which `done` are there; `taken` per pixel.
+    /// `total` samples of pixels, of which `done` are there.
     pub fn new(
         is_quiet: bool,
         total: u64,
-        (done, taken): (u64, u32),
+        done: u64,
         deadline: Option<Instant>,
         checkpoint: Option<Checkpoint>,
     ) -> Self {
         let target = if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(Some(total), target).with_style(style()).with_position(done);
         bar.reset_eta();
-        let passes = Passes { begun: Instant::now(), taken, ended_by_clock: false };
-        Conductor { bar, deadline, passes: Mutex::new(passes), checkpoint: checkpoint.map(Mutex::new) }
+        Conductor { bar, deadline, checkpoint: checkpoint.map(Mutex::new) }
+    }
+
+    /// Pass after pass until every pixel of `film` has `samples`, or until it is time to stop.
+    pub fn render(&self, renderer: &Renderer, film: &mut Film, samples: Range<u32>) -> Statistics {
+        let mut counted = Statistics::default();
+        let mut per_sample = Duration::ZERO;
+        let mut is_first = true;
+        loop {
+            let done = taken(film).0;
+            let left = (samples.end - samples.start).saturating_sub(done);
+            let is_late = self.deadline.is_some_and(|d| Instant::now() + per_sample / 2 > d);
+            if left == 0 || STOPS.load(Ordering::Relaxed) > 0 || (is_late && !is_first) {
+                return counted;
+            }
+            let length = self.affordable(per_sample).min(done.clamp(1, MOST_SAMPLES)).min(left);
+            let begun = Instant::now();
+            let pass = samples.start..samples.start + done + length;
+            counted = counted.plus(&renderer.render(film, pass, self));
+            per_sample = begun.elapsed() / length;
+            is_first = false;
+        }
+    }
+
+    /// Samples that fit into the longest pass and into the time that is left; one at least.
+    fn affordable(&self, per_sample: Duration) -> u32 {
+        let left = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
+        let time = left.map_or(LONGEST_PASS, |l| l.min(LONGEST_PASS));
+        (time.as_secs_f64() / per_sample.as_secs_f64().max(1e-9)).clamp(1.0, 1e6) as u32
     }
 
     /// Take the bar away, write the last checkpoint, and say why the render ended early, if it did.
-    pub fn finish(self, film: &Film, wanted: u32) -> Result<Option<&'static str>, crate::problem::Problem> {
+    pub fn finish(self, film: &Film, wanted: u32) -> Result<Option<&'static str>, Problem> {
         self.bar.finish_and_clear();
-        if let Some(checkpoint) = self.checkpoint.and_then(|c| c.into_inner().ok()) {
-            let mut checkpoint = checkpoint;
+        if let Some(mut checkpoint) = self.checkpoint.and_then(|c| c.into_inner().ok()) {
             checkpoint.save(film)?;
         }
-        let is_short = crate::parts::taken(film).0 < wanted;
-        let by_clock = self.passes.into_inner().is_ok_and(|p| p.ended_by_clock);
-        Ok(match is_short {
-            false => None,
-            true if by_clock => Some("the time limit was reached"),
-            true => Some("stopped"),
+        Ok(match STOPS.load(Ordering::Relaxed) {
+            _ if taken(film).0 >= wanted => None,
+            0 => Some("the time limit was reached"),
+            _ => Some("stopped"),
         })
     }
 
@@ -65,22 +89,7 @@ impl Conductor {
             self.bar.suspend(|| report::print(&problem.failure.sources, &problem.failure.diagnostics));
         }
     }
-
-    /// True when the next pass, as long as the last ones let expect, would end more beyond the limit than before it.
-    fn is_out_of_time(&self, film: &Film) -> bool {
-        let (Some(deadline), Ok(mut passes)) = (self.deadline, self.passes.lock()) else { return false };
-        let now = Instant::now();
-        let taken = crate::parts::taken(film).0;
-        let per_sample = (now - passes.begun) / (taken - passes.taken.min(taken)).max(1);
-        let next = per_sample * taken.clamp(1, LONGEST_PASS);
-        (passes.begun, passes.taken) = (now, taken);
-        passes.ended_by_clock = now + next / 2 > deadline;
-        passes.ended_by_clock
-    }
 }
-
-/// As the renderer has it: a pass doubles the samples until it takes so many.
-const LONGEST_PASS: u32 = 16;
 
 impl Control for Conductor {
     fn progress(&self, samples: u64) {
@@ -93,11 +102,6 @@ impl Control for Conductor {
         }
         self.save(film);
         true
-    }
-
-    fn after_pass(&self, film: &Film) -> bool {
-        let is_late = self.is_out_of_time(film);
-        STOPS.load(Ordering::Relaxed) == 0 && !is_late
     }
 }
 

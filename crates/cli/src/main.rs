@@ -28,7 +28,7 @@ use std::time::Instant;
 
 /// A ray tracer that is fast, physically right, and can explain every pixel it draws.
 #[derive(Debug, Parser)]
-#[command(name = "kirkas", version, arg_required_else_help = true, max_term_width = 100)]
+#[command(name = "kirkas", bin_name = "kirkas", version, arg_required_else_help = true, max_term_width = 100)]
 struct Kirkas {
     #[command(subcommand)]
     command: Command,

@@ -5,7 +5,7 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::conductor::{Conductor, watch_for_stops};
 use crate::header::Header;
 use crate::output::{PictureFile, check_writable, write_atomically};
-use crate::parts::{taken, tell_samples};
+use crate::parts::tell_samples;
 use crate::pictures::Development;
 use crate::problem::{Outcome, Problem};
 use crate::ranges::parse_range;
@@ -139,9 +139,8 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let deadline = args.time_limit.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
     watch_for_stops();
     let render_started = Instant::now();
-    let conductor =
-        Conductor::new(args.quiet, pixels * u64::from(wanted), (done, taken(&film).0), deadline, checkpoint);
-    let counted = prepared.renderer(usize::from(args.flock)).render(&mut film, samples.clone(), &conductor);
+    let conductor = Conductor::new(args.quiet, pixels * u64::from(wanted), done, deadline, checkpoint);
+    let counted = conductor.render(&prepared.renderer(usize::from(args.flock)), &mut film, samples.clone());
     seconds.render = render_started.elapsed().as_secs_f64();
 
     // Write.

@@ -17,7 +17,7 @@ macro_rules! faulty_renders {
 
 faulty_renders! {
     override_of_nothing: &["-D", "integrator.max_depth"];
-    override_of_unknown: &["-D", "lights.lmap.intensity=2", "-D", "integrator.max_dept=2"];
+    override_of_unknown: &["-D", "lights.lmap.intensity=2", "-D", "background.colr=2"];
     override_too_short: &["-D", "lights.lamp=2"];
     override_too_deep: &["-D", "lights.lamp.position.7=2"];
     override_syntax: &["-D", "lights.lamp.position=[1, 2"];
