@@ -16,6 +16,8 @@ pub enum Surface {
     Mirror { color: [f64; 3], ambient: f64, diffuse: f64, reflect: f64 },
     /// Clear, by Fresnel's equations.
     Glass { ior: f64, priority: i32 },
+    /// Clear without any reflection: refraction alone.
+    Clear { ior: f64, priority: i32 },
 }
 
 /// A body.
@@ -107,6 +109,11 @@ impl Scene {
                 Surface::Glass { ior, priority } => {
                     writeln!(t, "[materials.m{i}]\ntype = \"dielectric\"\nior = {ior}\npriority = {priority}")
                 }
+                Surface::Clear { ior, priority } => writeln!(
+                    t,
+                    "[materials.m{i}]\ntype = \"dielectric\"\nior = {ior}\npriority = {priority}\n\
+                     fresnel = \"constant\"\nreflectance = 0\ntransmittance = 1"
+                ),
                 Surface::Glowing { a, b, size } => writeln!(
                     t,
                     "[textures.t{i}]\ntype = \"checker\"\nmapping = \"solid\"\nspace = \"world\"\nscale = {}\na = [{}]\n\
@@ -172,6 +179,9 @@ impl Scene {
                     "pigment {{ rgbf 1 }} finish {{ ambient 0 diffuse 0 reflection {{ 0, 1 fresnel on }} conserve_energy }} \
                      interior {{ ior {ior} }}"
                 ),
+                Surface::Clear { ior, .. } => {
+                    format!("pigment {{ rgbf 1 }} finish {{ ambient 0 diffuse 0 }} interior {{ ior {ior} }}")
+                }
                 Surface::Glowing { a, b, size } => format!(
                     "pigment {{ checker rgb <{}> rgb <{}> scale {size} }} finish {{ ambient 1 diffuse 0 }}",
                     v(*a),

@@ -21,7 +21,7 @@ const fn variant(name: &'static str, scene: &'static str, options: &'static [&'s
 
 /// Every picture, in the order of the lecture.
 const PICTURES: &[Picture] = &[
-    variant("sphereflake", "../sphereflake", &["--size", "640x480"]),
+    variant("sphereflake", "../sphereflake", &["--size", "480x360"]),
     plain("ray_casting"),
     variant("ray_casting_shadows", "ray_casting", &["-D", "integrator.shadows=opaque"]),
     variant("whitted_depth_0", "whitted", &["-D", "integrator.max_depth=0"]),
@@ -74,7 +74,10 @@ pub fn run(only: &[String]) -> Outcome {
     for p in PICTURES.iter().filter(|p| only.is_empty() || only.iter().any(|o| o == p.name)) {
         let mut c = Command::new(&kirkas);
         c.current_dir(root());
-        c.arg("render").arg(format!("scenes/lecture/{}.toml", p.scene)).arg("-o").arg(folder.join(format!("{}.png", p.name)));
+        c.arg("render")
+            .arg(format!("scenes/lecture/{}.toml", p.scene))
+            .arg("-o")
+            .arg(folder.join(format!("{}.png", p.name)));
         c.args(p.options).arg("--quiet");
         sh::run(&mut c)?;
     }

@@ -12,7 +12,7 @@ pub fn owen_sobol_2d(index: u32, seed: u64) -> (f32, f32) {
     let shuffled = nested_uniform_shuffle(index, s as u32);
     let t = mix64(s ^ 0x5851_f42d_4c95_7f2d);
     let x = owen_scramble_reversed(shuffled, (s >> 32) as u32);
-    let y = owen_scramble_reversed(sobol_second(shuffled).reverse_bits(), t as u32);
+    let y = owen_scramble_reversed(sobol_second_reversed(shuffled), t as u32);
     (unit_f32(x), unit_f32(y))
 }
 
@@ -41,18 +41,16 @@ fn laine_karras(mut x: u32, seed: u32) -> u32 {
     x
 }
 
-/// The second Sobol' dimension (direction numbers of the polynomial `x + 1`: Pascal's triangle modulo 2).
-fn sobol_second(mut index: u32) -> u32 {
-    let mut result = 0;
-    let mut v = 1_u32 << 31;
-    while index != 0 {
-        if index & 1 != 0 {
-            result ^= v;
-        }
-        index >>= 1;
-        v ^= v >> 1;
-    }
-    result
+/// The second Sobol' dimension (direction numbers of the polynomial `x + 1`: Pascal's triangle modulo 2), bits reversed.
+///
+/// By Lucas' theorem bit k is the sum of all index bits j whose position contains k's bits: a superset sum in five steps.
+fn sobol_second_reversed(index: u32) -> u32 {
+    let mut x = index;
+    x ^= (x >> 1) & 0x5555_5555;
+    x ^= (x >> 2) & 0x3333_3333;
+    x ^= (x >> 4) & 0x0f0f_0f0f;
+    x ^= (x >> 8) & 0x00ff_00ff;
+    x ^ (x >> 16) & 0x0000_ffff
 }
 
 #[cfg(test)]
@@ -75,6 +73,24 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// The definition, direction number by direction number.
+    fn sobol_second_simple(mut index: u32) -> u32 {
+        let (mut result, mut v) = (0, 1_u32 << 31);
+        while index != 0 {
+            result ^= if index & 1 != 0 { v } else { 0 };
+            index >>= 1;
+            v ^= v >> 1;
+        }
+        result
+    }
+
+    #[test]
+    fn the_superset_sum_is_the_second_dimension() {
+        for i in (0..2000).chain((0..2000).map(|i: u32| i.wrapping_mul(0x9e37_79b9))) {
+            assert_eq!(sobol_second_reversed(i).reverse_bits(), sobol_second_simple(i));
         }
     }
 

@@ -116,23 +116,19 @@ impl<'a, O: Observer> Flock<'a, O> {
         let sampler = self.renderer.sampler(id);
         let start = self.renderer.camera_path(&sampler, id);
         let planes = self.renderer.planes;
-        let slot = Slot {
-            id,
-            pixel,
-            sampler,
-            weight: start.weight,
-            pending: 1,
-            sums: vec![[0; 3]; planes],
-            is_invalid: false,
-            aov: None,
+        let new = |mut sums: Vec<[i128; 3]>| {
+            sums.clear();
+            sums.resize(planes, [0; 3]);
+            Slot { id, pixel, sampler, weight: start.weight, pending: 1, sums, is_invalid: false, aov: None }
         };
         let index = match self.free.pop() {
             Some(i) => {
-                self.slots[i] = slot;
+                let sums = std::mem::take(&mut self.slots[i].sums);
+                self.slots[i] = new(sums);
                 i
             }
             None => {
-                self.slots.push(slot);
+                self.slots.push(new(Vec::new()));
                 self.slots.len() - 1
             }
         };

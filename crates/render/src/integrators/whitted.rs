@@ -3,7 +3,8 @@
 //! Light that bounces between diffuse surfaces is not followed: the ambient light stands for it.
 //!
 //! # Parameters
-//! `max_depth` bounces; `min_contribution` below which a ray is not sent; `shadows`; `shade_back`; `glossy_samples`.
+//! `max_depth` bounces; `min_contribution` below which a ray is not sent; `shadows`; `shade_back`; `glossy_samples`;
+//! `ambient` scale; `surface_offset`.
 //!
 //! # Example
 //! ```toml
@@ -51,6 +52,7 @@ pub const SPEC: TypeSpec = TypeSpec {
         ParamSpec::integer("glossy_samples", 4, (1.0, 65_536.0), "Rays per glossy lobe at the first bounce, 1 deeper.")
             .range((1.0, 65_536.0)),
         ParamSpec::number("ambient", 1.0, "Scales all ambient light.").range(NOT_NEGATIVE),
+        ParamSpec::bool("surface_offset", true, "Rays start clear of rounding errors; without it surfaces shade themselves (acne)."),
     ],
 };
 
@@ -74,6 +76,7 @@ pub struct Whitted {
     shade_back: bool,
     glossy_samples: u32,
     ambient: f32,
+    surface_offset: bool,
 }
 
 impl Whitted {
@@ -90,6 +93,7 @@ impl Whitted {
             shade_back: p.bool("shade_back"),
             glossy_samples: p.integer("glossy_samples") as u32,
             ambient: p.f32("ambient"),
+            surface_offset: p.bool("surface_offset"),
         }
     }
 }
@@ -112,6 +116,9 @@ impl Integrator for Whitted {
             out.end = Some(PathEnd::Escaped);
             return;
         };
+
+        let bare = SurfaceHit { error: DVec3::ZERO, ..*hit };
+        let hit = if self.surface_offset { hit } else { &bare };
 
         // Pass boundaries that another body covers.
         let material = scene.material(hit);
