@@ -13,7 +13,7 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("images", &["geometry"]),
     ("formats", &["geometry", "scene"]),
     ("render", &["geometry", "scene", "accel", "optics", "images"]),
-    ("cli", &["geometry", "scene", "images", "formats", "render"]),
+    ("cli", &["geometry", "scene", "accel", "images", "formats", "render"]),
     ("probe", &["scene", "formats", "render"]),
     ("testkit", &["geometry"]),
 ];
@@ -26,7 +26,7 @@ const ABSENT: &[(&str, &[&str])] = &[
     ("optics", &["std::fs", "std::time", "std::thread", "std::net"]),
     ("images", &["std::fs", "std::time", "std::thread", "std::net"]),
     ("formats", &["std::fs", "std::time", "std::thread", "std::net", "kirkas_render"]),
-    ("render", &["std::fs", "std::time", "std::net", "kirkas_formats", "HashMap", "HashSet"]),
+    ("render", &["std::fs", "std::time", "std::net", "kirkas_formats", "HashSet"]),
 ];
 
 /// Calls that give other bits on other platforms, in crates whose results are pictures.

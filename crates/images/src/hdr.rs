@@ -48,9 +48,12 @@ pub fn write_hdr(image: &RgbImage, texts: &Texts) -> Result<Vec<u8>> {
     Ok(file)
 }
 
+/// 255 * 2^119: the largest component that the format holds.
+const LARGEST: f32 = f32::from_bits(0x7f7f_0000);
+
 /// The shared exponent is that of the largest component, so that its mantissa lies in 128..=255.
 fn rgbe(pixel: [f32; 3]) -> [u8; 4] {
-    let [r, g, b] = pixel.map(|value| if value > 0.0 { f64::from(value.min(255.0 * 2f32.powi(119))) } else { 0.0 });
+    let [r, g, b] = pixel.map(|value| if value > 0.0 { f64::from(value.min(LARGEST)) } else { 0.0 });
     let largest = r.max(g).max(b);
     let exponent = ((largest.to_bits() >> 52) as i32) - 1022;
     if largest == 0.0 || exponent < -127 {

@@ -21,6 +21,10 @@
 //! ## Limits
 //!
 //! Rays start in the plane through `position`: what lies behind it is not seen.
+//!
+//! ## References
+//!
+//! Foley, van Dam, Feiner & Hughes 1990, "Computer Graphics: Principles and Practice", section 6.1.2 (parallel projections).
 
 use super::{CameraRay, FilmPlace};
 use kirkas_geometry::DVec3;

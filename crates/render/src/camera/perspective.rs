@@ -22,6 +22,10 @@
 //! ## Limits
 //!
 //! The film is flat: towards the edges of a wide view things are stretched, as `1 / cos(angle)`.
+//!
+//! ## References
+//!
+//! Foley, van Dam, Feiner & Hughes 1990, "Computer Graphics: Principles and Practice", section 6.1.1 (perspective).
 
 use super::{CameraRay, FilmPlace};
 use kirkas_geometry::DVec3;
