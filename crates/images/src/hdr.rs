@@ -49,7 +49,7 @@ pub fn write_hdr(image: &RgbImage, texts: &Texts) -> Result<Vec<u8>> {
 }
 
 /// 255 * 2^119: the largest component that the format holds.
-const LARGEST: f32 = f32::from_bits(0x7f7f_0000);
+const LARGEST: f32 = f32::from_bits(0x7eff_0000);
 
 /// The shared exponent is that of the largest component, so that its mantissa lies in 128..=255.
 fn rgbe(pixel: [f32; 3]) -> [u8; 4] {
