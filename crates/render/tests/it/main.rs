@@ -1,10 +1,17 @@
 //! Everything that the renderer promises.
 
 mod cameras;
+mod effects;
+mod everything;
 mod filters;
+mod numbers;
+mod observer;
+mod scale;
 mod shapes;
 mod shapes_areas;
 mod shapes_cases;
 mod shapes_errors;
 mod shapes_offsets;
+mod support;
 mod textures;
+mod whitted;

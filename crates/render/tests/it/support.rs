@@ -1,0 +1,83 @@
+//! Scenes as inline TOML, pictures as numbers.
+
+use kirkas_formats::{FormatAssets, load};
+use kirkas_render::film::fixed;
+use kirkas_render::render::Undisturbed;
+use kirkas_render::{Film, Options, Prepared, Statistics, prepare};
+use kirkas_scene::files::{FileAccess, Limits, MemoryFiles};
+use std::ops::Range;
+
+/// A colour, or any three numbers, in double precision.
+pub type Rgb = [f64; 3];
+
+/// Compile a scene that stands in `toml`, with other files beside it.
+pub fn prepared_with(toml: &str, files: &[(&str, &[u8])], options: &Options) -> Prepared {
+    let mut all = MemoryFiles::default();
+    all.0.insert("scene.toml".into(), toml.as_bytes().to_vec());
+    for (name, bytes) in files {
+        all.0.insert((*name).into(), bytes.to_vec());
+    }
+    let access = FileAccess::new(Box::new(all), Limits::default());
+    let description = load(&access, "scene.toml").unwrap_or_else(|e| panic!("{e:?}\n{toml}"));
+    let assets = FormatAssets::new(&access, &description.sources);
+    prepare(&description, &assets, options).unwrap_or_else(|e| panic!("{e:#?}\n{toml}"))
+}
+
+/// Compile a scene that needs no other file.
+pub fn prepared(toml: &str) -> Prepared {
+    prepared_with(toml, &[], &Options::default())
+}
+
+/// Take `samples` of every pixel.
+pub fn expose(p: &Prepared, samples: Range<u32>) -> (Film, Statistics) {
+    let mut film = Film::new(p.film.clone());
+    let statistics = p.renderer(64).render(&mut film, samples, &Undisturbed);
+    assert_eq!(film.invalid_samples(), 0, "samples that are no numbers");
+    (film, statistics)
+}
+
+/// The whole picture.
+pub fn render(toml: &str) -> Film {
+    let p = prepared(toml);
+    expose(&p, 0..p.samples).0
+}
+
+/// The mean of a pixel, in double precision.
+pub fn pixel(film: &Film, x: u32, y: u32) -> Rgb {
+    let (_, _, tile, i) = film.pixels().find(|p| (p.0, p.1) == (x, y)).expect("a pixel of the film");
+    let planes = film.layout.planes();
+    let n = f64::from(tile.counts[i].taken - tile.counts[i].invalid);
+    std::array::from_fn(|c| fixed::to_f64((0..planes).map(|p| tile.sums[i * planes + p][c]).sum()) / n)
+}
+
+/// All pixels, row by row.
+pub fn pixels(film: &Film) -> Vec<Rgb> {
+    let c = film.layout.crop;
+    (c.y0..c.y1).flat_map(|y| (c.x0..c.x1).map(move |x| (x, y))).map(|(x, y)| pixel(film, x, y)).collect()
+}
+
+/// `body` with a camera of one pixel at `from`, whose every ray runs exactly towards `to`.
+pub fn one_pixel(body: &str, from: Rgb, to: Rgb, samples: u32) -> String {
+    format!(
+        "{body}\n[film]\nwidth = 1\nheight = 1\nfilter = \"point\"\n[sampler]\nsamples = {samples}\n\
+         [cameras.eye]\ntype = \"perspective\"\nposition = {from:?}\nlook_at = {to:?}\nfov = 10\n"
+    )
+}
+
+/// The radiance that arrives at `from` out of the direction of `to`.
+pub fn seen(body: &str, from: Rgb, to: Rgb, samples: u32) -> Rgb {
+    pixel(&render(&one_pixel(body, from, to, samples)), 0, 0)
+}
+
+/// The same for grey scenes: red, which must be the others too.
+pub fn grey(body: &str, from: Rgb, to: Rgb, samples: u32) -> f64 {
+    let [r, g, b] = seen(body, from, to, samples);
+    assert!(r == g && g == b, "not grey: {r} {g} {b}");
+    r
+}
+
+/// `value` is `truth` but for a share of `tolerance`.
+#[track_caller]
+pub fn assert_near(value: f64, truth: f64, tolerance: f64) {
+    assert!((value - truth).abs() <= tolerance * truth.abs().max(1e-12), "{value} is not {truth}");
+}
