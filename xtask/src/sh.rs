@@ -49,8 +49,11 @@ pub fn exists(name: &str, probe: &str) -> bool {
     Command::new(name).arg(probe).output().is_ok_and(|o| o.status.success())
 }
 
-/// Build `kirkas` as users do, and say where it lies.
+/// Build `kirkas` as users do, and say where it lies; `KIRKAS_BIN` names a binary to use instead.
 pub fn build_kirkas() -> Result<PathBuf, String> {
+    if let Some(binary) = std::env::var_os("KIRKAS_BIN") {
+        return Ok(root().join(binary));
+    }
     run(cargo().args(["build", "--release", "--package", "kirkas-cli"]))?;
     Ok(target_dir().join("release").join(format!("kirkas{}", std::env::consts::EXE_SUFFIX)))
 }

@@ -15,6 +15,7 @@ pub const fn gamma(n: u32) -> f32 {
 
 /// Move `point` off a surface along its geometric `normal`, to the side that `direction` goes to, by at least `error`
 /// (absolute, per axis): the result lies clear of the surface, whatever the rounding was.
+#[inline]
 pub fn offset_origin(point: DVec3, error: DVec3, normal: DVec3, direction: DVec3) -> Vec3 {
     let distance = normal.abs().dot(error);
     let offset = if direction.dot(normal) < 0.0 { normal * -distance } else { normal * distance };

@@ -17,16 +17,19 @@ impl Light {
     }
 
     /// `f` applied to each lane.
+    #[inline]
     pub fn map(self, f: impl FnMut(f32) -> f32) -> Self {
         Light(self.0.map(f))
     }
 
     /// The greatest lane.
+    #[inline]
     pub fn max_component(self) -> f32 {
         self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
     }
 
     /// True when every lane is 0.
+    #[inline]
     pub fn is_black(self) -> bool {
         self.0 == [0.0; 4]
     }

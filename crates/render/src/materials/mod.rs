@@ -20,7 +20,9 @@ pub struct Material {
     /// Its name.
     pub name: String,
     model: BsdfModel,
-    rows: Vec<(&'static ParamSpec, Option<ColorSource>)>,
+    rows: Vec<Row>,
+    /// The rows' values where they are the same everywhere; textures fill in the others.
+    slots: [Light; MOST_ROWS],
     alpha: NumberSource,
     /// What it emits.
     pub emission: Option<Emission>,
@@ -28,6 +30,26 @@ pub struct Material {
     pub medium: Option<Medium>,
     /// How much brighter radiance is inside the body: the index squared, or 1 with the classics' constants.
     pub radiance_gain: f32,
+}
+
+/// One texture row of the model.
+struct Row {
+    spec: &'static ParamSpec,
+    /// `None` where it is absent.
+    source: Option<ColorSource>,
+}
+
+impl Row {
+    fn value(&self, textures: &Textures, at: &TexturePoint) -> Light {
+        self.source.map_or(Light::BLACK, |s| Lanes::RGB.parameter(self.spec, textures.color(s, at)))
+    }
+
+    fn constant(&self) -> Light {
+        match self.source {
+            Some(ColorSource::Constant(c)) => Lanes::RGB.parameter(self.spec, c),
+            _ => Light::BLACK,
+        }
+    }
 }
 
 /// What a surface emits.
@@ -59,13 +81,15 @@ impl Material {
             (_, kirkas_scene::Fallback::Absent) => names.optional_color(params, row.name),
             _ => Some(names.color(params, row.name)),
         };
-        let rows: Vec<_> = texture_rows(params.spec()).map(|row| (row, source(row))).collect();
+        let rows: Vec<Row> = texture_rows(params.spec()).map(|spec| Row { spec, source: source(spec) }).collect();
         debug_assert!(rows.len() <= MOST_ROWS);
+        let slots = std::array::from_fn(|i| rows.get(i).map_or(Light::BLACK, Row::constant));
         let medium = model.medium();
         let is_constant = params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,
+            slots,
             alpha: names.number(params, "alpha"),
             emission: (params.spec().name == "emitter").then(|| Emission::new(params, names)),
             medium,
@@ -86,10 +110,10 @@ impl Material {
 
     /// The model at a point.
     pub fn bsdf(&self, textures: &Textures, at: &TexturePoint, interface: Interface) -> Bsdf {
-        let mut slots = [Light::BLACK; MOST_ROWS];
-        for (slot, (row, source)) in slots.iter_mut().zip(&self.rows) {
-            if let Some(s) = source {
-                *slot = Lanes::RGB.parameter(row, textures.color(*s, at));
+        let mut slots = self.slots;
+        for (slot, row) in slots.iter_mut().zip(&self.rows) {
+            if matches!(row.source, Some(ColorSource::Texture(_))) {
+                *slot = row.value(textures, at);
             }
         }
         self.model.at(&slots[..self.rows.len()], interface)
@@ -99,9 +123,9 @@ impl Material {
     /// tint of transmission, without Fresnel or bending; `None` for surfaces that bound no body.
     pub fn straight_transmittance(&self, textures: &Textures, at: &TexturePoint) -> Option<Light> {
         self.medium?;
-        let named = |n: &str| self.rows.iter().find(|(row, _)| row.name == n);
-        let (row, source) = named("transmittance").or_else(|| named("transmit"))?;
-        Some(source.map_or(Light::BLACK, |s| Lanes::RGB.parameter(row, textures.color(s, at))))
+        let named = |n: &str| self.rows.iter().find(|row| row.spec.name == n);
+        let row = named("transmittance").or_else(|| named("transmit"))?;
+        Some(row.value(textures, at))
     }
 
     /// Colour for the albedo AOV: what ambient light is multiplied by, or the first colour of clear and mirroring surfaces.
@@ -110,8 +134,8 @@ impl Material {
         if !ambient.is_black() {
             return Lanes::RGB.to_film(ambient);
         }
-        let first = self.rows.iter().find(|(row, s)| row.ty == ParamType::ColorTexture && s.is_some());
-        first.and_then(|(_, s)| *s).map_or([0.0; 3], |s| textures.color(s, at))
+        let first = self.rows.iter().find(|row| row.spec.ty == ParamType::ColorTexture && row.source.is_some());
+        first.and_then(|row| row.source).map_or([0.0; 3], |s| textures.color(s, at))
     }
 }
 
