@@ -68,7 +68,7 @@ pub(crate) struct Start {
 const LONGEST_PASS: u32 = 16;
 
 /// Tiles between two calls of `Control::between`.
-const TILES_PER_CHUNK: usize = 128;
+const TILES_PER_CHUNK: usize = 32;
 
 impl Renderer<'_> {
     /// Bring every pixel of `film` to samples `samples`. Pixels that have some already (resumed, stopped) get the rest: a

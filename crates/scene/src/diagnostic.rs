@@ -99,6 +99,7 @@ pub fn unknown_name<'a>(
     let listed = names.iter().take(MOST).map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
     let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
     let help = match (near, names.is_empty()) {
+        (Some(n), _) if names.len() == 1 => format!("write `{n}`"),
         (Some(n), _) => format!("write `{n}`, or one of: {listed}{more}"),
         (None, false) => format!("write one of: {listed}{more}"),
         (None, true) => format!("the scene defines no {what}; define one, or remove this"),

@@ -2,6 +2,7 @@
 
 use crate::output::{check_writable, print_out, write_atomically};
 use crate::problem::{Outcome, Problem};
+use kirkas_formats::manual::markdown;
 use kirkas_formats::schema::json_schema;
 use kirkas_render::catalog;
 use std::path::PathBuf;
@@ -17,11 +18,14 @@ pub struct Schema {
     /// File to write instead
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// The manual of all types and parameters instead, as Markdown
+    #[arg(long)]
+    manual: bool,
 }
 
 /// Do it.
 pub fn run(args: &Schema) -> Result<Outcome, Problem> {
-    let mut text = json_schema(&catalog());
+    let mut text = if args.manual { markdown(&catalog()) } else { json_schema(&catalog()) };
     if !text.ends_with('\n') {
         text.push('\n');
     }
