@@ -8,3 +8,4 @@ mod commands;
 mod errors;
 mod faults;
 mod interruptions;
+mod pages;

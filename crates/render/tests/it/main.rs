@@ -4,6 +4,7 @@ mod cameras;
 mod effects;
 mod everything;
 mod filters;
+mod manuals;
 mod numbers;
 mod observer;
 mod scale;
