@@ -16,7 +16,7 @@ pub fn run(args: &[String]) -> Outcome {
         sh::run(program("cargo").args(["install", "--locked", "cargo-mutants"]))?;
     }
     let mut list = program("cargo");
-    list.args(["mutants", "--list"]);
+    list.args(["mutants", "--list", "--workspace"]);
     for f in FILES {
         list.args(["--file", f]);
     }
@@ -27,7 +27,7 @@ pub fn run(args: &[String]) -> Outcome {
     names.sort_unstable();
     println!("{} of {} mutants, seed {SEED}", names.len(), all.lines().count());
     let mut c = program("cargo");
-    c.args(["mutants", "--no-shuffle", "--profile", "checked", "--timeout", "180", "--baseline", "skip"]);
+    c.args(["mutants", "--workspace", "--no-shuffle", "--profile", "checked", "--timeout", "180", "--baseline", "skip"]);
     for f in FILES {
         c.args(["--file", f]);
     }
