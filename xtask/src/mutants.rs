@@ -56,6 +56,8 @@ fn shuffle(names: &mut [&str]) {
     }
 }
 
+/// For a regular expression. (`\<` would be the start of a word, so only what must be is escaped.)
 fn escape(text: &str) -> String {
-    text.chars().flat_map(|c| (!c.is_alphanumeric() && c != ' ' && c != '_').then_some('\\').into_iter().chain([c])).collect()
+    const SPECIAL: &str = "\\.+*?()|[]{}^$-";
+    text.chars().flat_map(|c| SPECIAL.contains(c).then_some('\\').into_iter().chain([c])).collect()
 }
