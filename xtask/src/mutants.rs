@@ -1,6 +1,6 @@
 //! Mutation testing of the formulas: a fixed random sample of mutants must be caught by the tests.
 
-use crate::sh::{self, Outcome, exists, output, program, root, target_dir};
+use crate::sh::{self, Outcome, output, program, root, target_dir};
 use std::fs;
 
 /// Where formulas live.
@@ -16,7 +16,7 @@ const SLOW: [&str; 7] =
 /// `cargo xtask mutants [COUNT]`
 pub fn run(args: &[String]) -> Outcome {
     let count: usize = args.first().map_or(Ok(100), |a| a.parse()).map_err(|e| format!("count: {e}"))?;
-    if !exists("cargo-mutants", "--version") {
+    if output(program("cargo").args(["mutants", "--version"])).is_err() {
         sh::run(program("cargo").args(["install", "--locked", "cargo-mutants"]))?;
     }
     let mut list = program("cargo");
