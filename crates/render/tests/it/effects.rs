@@ -93,17 +93,17 @@ fn the_shadow_of_a_moving_square_is_as_soft_as_its_motion() {
 /// bright as in its middle.
 fn blurred(lens: &str, distance: f64) -> f64 {
     let lens = if lens.contains("aperture") { lens.to_string() } else { format!("aperture_radius = 0.05\n{lens}") };
-    const SIDE: u32 = 100;
+    const SIDE: u32 = 60;
     let toml = format!(
-        "[film]\nwidth = {SIDE}\nheight = {SIDE}\nfilter = \"box\"\n[sampler]\nsamples = 1024\n
+        "[film]\nwidth = {SIDE}\nheight = {SIDE}\nfilter = \"box\"\n[sampler]\nsamples = 512\n
          [cameras.c]\ntype = \"thin_lens\"\nposition = [0, 0, 0]\nlook_at = [0, 0, -2]\nfov = 5\n{lens}\n
          [materials.lamp]\ntype = \"emitter\"\n[objects.o]\ntype = \"sphere\"\ncenter = [0, 0, {:?}]\nradius = {:?}\nmaterial = \"lamp\"\n",
         -distance,
         LAMP * distance / 2.0
     );
     let values: Vec<f64> = pixels(&render(&toml)).iter().map(|p| p[1]).collect();
-    let middle = |k: usize| -> f64 { values[k * 100 + 48..k * 100 + 52].iter().sum() };
-    let half = 0.5 * (48..52).map(middle).sum::<f64>() / 16.0;
+    let middle = |k: usize| -> f64 { values[k * 60 + 28..k * 60 + 32].iter().sum() };
+    let half = 0.5 * (28..32).map(middle).sum::<f64>() / 16.0;
     let unit = 2.0 * 2.0 * 2.5_f64.to_radians().tan() / f64::from(SIDE);
     values.iter().filter(|v| **v > half).count() as f64 * unit * unit
 }
@@ -120,21 +120,21 @@ fn diameter(area: f64) -> f64 {
 fn the_circle_of_confusion_is_the_thin_lenss() {
     for distance in [4.0, 8.0, 1.2] {
         let truth = 0.1 * (distance - 2.0_f64).abs() / distance;
-        assert_near(diameter(blurred("", distance)), truth, 0.04);
+        assert_near(diameter(blurred("", distance)), truth, 0.06);
     }
     // Twice the lens, twice the circle.
-    assert_near(diameter(blurred("aperture_radius = 0.1", 4.0)) / 2.0, diameter(blurred("", 4.0)), 0.04);
+    assert_near(diameter(blurred("aperture_radius = 0.1", 4.0)) / 2.0, diameter(blurred("", 4.0)), 0.06);
     // Sharp in the plane of focus.
-    assert_near(diameter(blurred("", 2.0)), 2.0 * LAMP, 0.1);
-    assert_near(diameter(blurred("focus_distance = 4", 4.0)), 2.0 * LAMP, 0.1);
-    assert_near(diameter(blurred("focus_distance = 4", 2.0)), 0.1 * 2.0 / 4.0, 0.04);
+    assert_near(diameter(blurred("", 2.0)), 2.0 * LAMP, 0.2);
+    assert_near(diameter(blurred("focus_distance = 4", 4.0)), 2.0 * LAMP, 0.2);
+    assert_near(diameter(blurred("focus_distance = 4", 2.0)), 0.1 * 2.0 / 4.0, 0.06);
 }
 
 /// An aperture's corners lie on the circle of the lens: a square has 2 / pi of its area.
 #[test]
 fn an_aperture_of_blades_draws_its_shape() {
-    assert_near(blurred("blades = 4", 4.0), 0.5 * 0.05 * 0.05, 0.06);
-    assert_near(blurred("blades = 6\nblade_rotation = 20", 4.0), 1.5 * 3.0_f64.sqrt() * 0.025 * 0.025, 0.06);
+    assert_near(blurred("blades = 4", 4.0), 0.5 * 0.05 * 0.05, 0.08);
+    assert_near(blurred("blades = 6\nblade_rotation = 20", 4.0), 1.5 * 3.0_f64.sqrt() * 0.025 * 0.025, 0.08);
 }
 
 /// An edge through the middle of a pixel row: each filter gives the share of its weight on the bright side.
