@@ -21,7 +21,7 @@ const fn variant(name: &'static str, scene: &'static str, options: &'static [&'s
 
 /// Every picture, in the order of the lecture.
 const PICTURES: &[Picture] = &[
-    variant("sphereflake", "../sphereflake", &["--size", "480x360"]),
+    variant("sphereflake", "../sphereflake", &["--size", "400x300"]),
     plain("ray_casting"),
     variant("ray_casting_shadows", "ray_casting", &["-D", "integrator.shadows=opaque"]),
     variant("whitted_depth_0", "whitted", &["-D", "integrator.max_depth=0"]),
@@ -62,7 +62,7 @@ const PICTURES: &[Picture] = &[
     plain("linearity"),
     plain("primitives"),
     plain("textures"),
-    plain("instances"),
+    variant("instances", "instances", &["--size", "400x300"]),
     plain("alpha_mask"),
 ];
 
