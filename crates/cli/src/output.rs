@@ -61,6 +61,36 @@ pub fn check_writable(path: &Path) -> Result<(), Problem> {
     }
 }
 
+/// Make sure that nothing which is written replaces something that was read, nor another file that is written.
+pub fn check_no_loss<'a>(outputs: impl IntoIterator<Item = &'a Path>, inputs: &[PathBuf]) -> Result<(), Problem> {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|p| true_place(p)).collect();
+    let mut seen: Vec<PathBuf> = Vec::new();
+    for path in outputs {
+        let place = true_place(path);
+        if inputs.contains(&place) {
+            let message = format!("`{}` is read, so writing it would lose what is in it", path.display());
+            let help = "give what is written another name (-o FILE)";
+            return Err(Problem::input(Diagnostic::error("would-overwrite", message).help(help)));
+        }
+        if seen.contains(&place) {
+            let message = format!("`{}` would be written twice", path.display());
+            let error = Diagnostic::error("same-file", message).help("give each file a name of its own");
+            return Err(Problem::input(error));
+        }
+        seen.push(place);
+    }
+    Ok(())
+}
+
+/// One name for a file, whatever way leads to it.
+fn true_place(path: &Path) -> PathBuf {
+    if let Ok(full) = path.canonicalize() {
+        return full;
+    }
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    parent.canonicalize().unwrap_or_else(|_| parent.to_path_buf()).join(path.file_name().unwrap_or_default())
+}
+
 fn unwritable(path: &Path, why: impl std::fmt::Display) -> Problem {
     let message = format!("`{}` cannot be written: {why}", path.display());
     Problem::input(

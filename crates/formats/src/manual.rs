@@ -2,6 +2,90 @@
 
 use kirkas_scene::{Catalog, Fallback, Kind, ParamSpec, ParamType};
 
+/// What the tables cannot say.
+const SCENES: &str = r##"
+## A scene
+
+A scene is a TOML file. Kinds of which there is one are written `[film]`, `[sampler]`, `[integrator]`, `[accelerator]`,
+`[background]`; all others have names, and refer to each other by them.
+
+```toml
+title = "A red ball"            # optional, like `description` and `version = 1`
+include = ["materials.toml"]    # optional; what stands here wins, single kinds key by key
+
+[film]
+width = 320
+height = 240
+
+[cameras.main]
+type = "perspective"
+position = [0, 1, 5]
+look_at = [0, 0.5, 0]
+
+[lights.lamp]
+type = "point"
+position = [2, 4, 3]
+intensity = 20
+
+[textures.squares]
+type = "checker"
+a = "#203040"
+b = 0.8
+
+[materials.tiles]
+type = "lambert"
+reflectance = "squares"         # a colour, or the name of a texture
+
+[materials.red]
+type = "lambert"
+reflectance = [0.8, 0.2, 0.1]
+
+[materials.panel]
+type = "emitter"                # an area light is any shape that wears an emitter
+radiance = [1, 0.9, 0.8]
+intensity = 4
+
+[objects.floor]
+type = "plane"
+material = "tiles"
+
+[objects.ball]
+type = "sphere"
+center = [0, 0.5, 0]
+radius = 0.5
+material = "red"
+
+[objects.lamp]
+type = "rectangle"
+center = [-2, 3, 0]
+edge_u = [1, 0, 0]
+edge_v = [0, 0, 1]
+material = "panel"
+```
+
+Files (`file = "mesh.ply"`) are found beside the file that names them and may not lie outside the scene's folder; `--root DIR`
+widens that. Any value can be set from the command line: `-D lights.lamp.intensity=2`, `-D film.width=80`,
+`-D 'cameras.main.position=[0, 0, 5]'`; options such as `--size` have the last word.
+
+## Transforms and motion
+
+`transform` is a list of steps, applied to the object in written order, after its own parameters and before its parent's:
+
+```toml
+transform = [{ scale = 2 }, { rotate = [0, 1, 0, 45] }, { translate = [1, 0, 0] }]
+```
+
+Steps: `{ translate = [x, y, z] }`, `{ rotate = [ax, ay, az, degrees] }` about an axis through the origin, `{ scale = s }` or
+`{ scale = [x, y, z] }`, `{ look_at = { from = [..], to = [..], up = [..] } }`, `{ matrix = [12 or 16 numbers by rows] }`.
+
+`motion` is a list of key frames; between them translation and stretch go straight and rotation turns evenly. It needs a camera
+whose `shutter` is open for a while, or `--time`:
+
+```toml
+motion = [{ time = 0, transform = [] }, { time = 1, transform = [{ rotate = [0, 0, 1, 90] }] }]
+```
+"##;
+
 /// The page as Markdown.
 pub fn markdown(catalog: &Catalog) -> String {
     let mut out = String::from(
@@ -9,6 +93,7 @@ pub fn markdown(catalog: &Catalog) -> String {
          Cut from the tables in the program; do not edit. Colours are linear Rec.709 `[r, g, b]`, one number for grey, or\n\
          `\"#rrggbb\"` in sRGB. Angles are in degrees. Transforms apply in written order.\n",
     );
+    out += SCENES;
     for kind in Kind::ALL {
         out += &format!("\n## {}\n\n{}\n", kind.section(), heading(kind));
         for spec in catalog.of_kind(kind) {

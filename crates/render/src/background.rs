@@ -64,6 +64,14 @@ impl Background {
         Background::Gradient { up, stops }
     }
 
+    /// True when it sends nothing from anywhere.
+    pub fn is_black(&self) -> bool {
+        match self {
+            Background::Constant(l) => l.is_black(),
+            Background::Gradient { stops, .. } => stops.iter().all(|s| s.1.is_black()),
+        }
+    }
+
     /// Radiance from `direction` (any length).
     pub fn radiance(&self, direction: Vec3) -> Light {
         match self {

@@ -148,6 +148,13 @@ fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> 
         return Err(Diagnostic::error("bad-crop", "the crop window is empty or not inside the image")
             .help(format!("give X0,Y0,X1,Y1 with 0 <= X0 < X1 <= {} and 0 <= Y0 < Y1 <= {}", size.0, size.1)));
     }
+    const MOST_PIXELS: usize = 1 << 28;
+    if crop.area() > MOST_PIXELS {
+        let message = format!("{} x {} pixels are too many for one film", crop.width(), crop.height());
+        return Err(Diagnostic::error("too-large", message)
+            .at(p.span("width"), "times `height`")
+            .help(format!("stay below {MOST_PIXELS} pixels, or render parts with --crop")));
+    }
     Ok(FilmLayout { size, crop, groups: Vec::new(), aovs: options.aovs })
 }
 
@@ -230,6 +237,25 @@ fn compile(
     let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::Bvh2, |a| a.1);
     let accel = Accel::build(kind, scene_geometry, &Threads)
         .map_err(|e| one(Diagnostic::error("bad-geometry", e.to_string()).help("mend the mesh or the object that it names")))?;
+
+    if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {
+        let background = Background::new(&singles.params(Kind::Background));
+        if background.is_black() {
+            warnings.push(
+                Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black")
+                    .help("add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour"),
+            );
+        }
+    }
+    if open == close {
+        if let Some(moving) = d.all(Kind::Object).iter().chain(d.all(Kind::Camera)).find(|e| e.params.get("motion").is_some()) {
+            warnings.push(
+                Diagnostic::warning("no-shutter", format!("`{}` moves, but the shutter is open for no time", moving.name.text))
+                    .at(moving.name.span, "moves")
+                    .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time"),
+            );
+        }
+    }
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
     let mut scene = Scene {

@@ -77,6 +77,7 @@ fn check_value(d: &Description, row: &ParamSpec, name: &Name, node: &Node, found
             found.push(unknown_name(kind.singular(), text, span, names));
         }
     };
+    let like_color = |t: &str| t.starts_with('#');
     let list_of = |n: usize| node.list().is_some_and(|l| l.len() == n && l.iter().all(|x| x.number().is_some()));
     match row.ty {
         ParamType::Bool if !matches!(node.value, Value::Bool(_)) => found.push(mismatch("true or false")),
@@ -108,6 +109,7 @@ fn check_value(d: &Description, row: &ParamSpec, name: &Name, node: &Node, found
             _ => found.push(mismatch(&format!("a list of names of {}", kind.section()))),
         },
         ParamType::ColorTexture if read_color(&node.value).is_none() => match node.text() {
+            Some(t) if like_color(t) => found.push(mismatch("a colour like \"#rrggbb\" (six hexadecimal digits)")),
             Some(t) => reference(Kind::Texture, t, node.span, found),
             None => found.push(mismatch("a colour or the name of a texture")),
         },

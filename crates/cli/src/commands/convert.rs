@@ -1,6 +1,6 @@
 //! `kirkas convert`: any scene as native TOML, which renders to the same picture.
 
-use crate::output::write_atomically;
+use crate::output::{check_no_loss, write_atomically};
 use crate::problem::{Outcome, Problem};
 use crate::report;
 use crate::scene_file::SceneFile;
@@ -36,6 +36,8 @@ pub fn run(args: &Convert) -> Result<Outcome, Problem> {
     }
     crate::output::check_writable(&args.out)?;
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
+    let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| scene.root.join(k)).collect();
+    check_no_loss([args.out.as_path()], &inputs)?;
     let mut settings = Settings::new(&mut scene);
     settings.overrides(&args.scene.set);
     settings.finish()?;

@@ -1,7 +1,7 @@
 //! `kirkas diff`: how far two pictures are from each other.
 
 use crate::input::read_file;
-use crate::output::{check_writable, print_out, write_atomically};
+use crate::output::{check_no_loss, check_writable, print_out, write_atomically};
 use crate::parts::EXR;
 use crate::problem::{Outcome, Problem};
 use kirkas_images::heat::write_heat_png;
@@ -45,7 +45,12 @@ fn metric_parser() -> clap::builder::PossibleValuesParser {
 /// Do it.
 pub fn run(args: &Diff) -> Result<Outcome, Problem> {
     if let Some(path) = &args.output {
+        if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
+            let message = format!("`{}`: the picture of differences is a `.png`", path.display());
+            return Err(Problem::input(Diagnostic::error("unknown-format", message).help("give it the extension `.png`")));
+        }
         check_writable(path)?;
+        check_no_loss([path.as_path()], &[args.a.clone(), args.b.clone()])?;
     }
     let metric = Metric::from_name(&args.metric).unwrap_or(Metric::Rmse);
     let (mut a, mut b) = (Picture::read(&args.a)?, Picture::read(&args.b)?);

@@ -4,7 +4,7 @@ use crate::aov_args::{self, AovArg};
 use crate::checkpoint::{self, Checkpoint};
 use crate::conductor::{Conductor, watch_for_stops};
 use crate::header::Header;
-use crate::output::{PictureFile, check_writable, write_atomically};
+use crate::output::{PictureFile, check_no_loss, check_writable, print_out, write_atomically};
 use crate::parts::tell_samples;
 use crate::pictures::Development;
 use crate::problem::{Outcome, Problem};
@@ -78,7 +78,7 @@ pub struct Render {
     /// Extra layers: depth[:NEAR:FAR], normals, albedo, position, object_id, material_id, sample_count, variance
     #[arg(long, value_name = "NAME[:ARGS],...", value_delimiter = ',')]
     aov: Vec<String>,
-    /// Write what it cost as JSON
+    /// Write what it cost as JSON; `-` is stdout
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
     /// Show no progress and no warnings
@@ -123,11 +123,18 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
         report::print(&warnings.sources, &warnings.diagnostics);
     }
 
+    // Nothing that the scene was made of may be lost.
+    let development = development(args, &prepared, aovs);
+    let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| scene.root.join(k)).collect();
+    let layers = development.aov_files(&files);
+    let outputs = files.iter().map(|f| &f.path).chain(layers.iter().map(|l| &l.0)).chain(stats_file(args)).chain(&args.checkpoint);
+    check_no_loss(outputs.map(PathBuf::as_path), &inputs)?;
+
     // Begin, or go on.
     let samples = args.samples.clone().unwrap_or(0..prepared.samples);
     let scene_name = args.scene.scene.to_string_lossy();
     let mut header = Header::new(&scene_name, &scene.files, &overrides, prepared.seed);
-    header.set("aov", aov_args::text(&aovs));
+    header.set("aov", aov_args::text(&development.aovs));
     let mut film = first_film(args, &header, &prepared, &samples)?;
 
     // Render.
@@ -145,13 +152,14 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
 
     // Write.
     let done = tell_samples(&mut header, &film, samples.start);
-    development(args, &prepared, aovs).write(&film, &header, &files)?;
+    development.write(&film, &header, &files)?;
     let stopped = conductor.finish(&film, wanted)?;
     seconds.total = started.elapsed().as_secs_f64();
     if let Some(path) = &args.stats {
         let warnings = &warnings.diagnostics;
         let json = stats_json(&header.texts(), &prepared, &film, &done, &counted, seconds, warnings);
-        write_atomically(path, format!("{json:#}\n").as_bytes())?;
+        let text = format!("{json:#}\n");
+        if stats_file(args).is_some() { write_atomically(path, text.as_bytes())? } else { print_out(text.as_bytes())? }
     }
     if let Some(why) = stopped {
         report::note(format_args!("kirkas: {why} after {} of {wanted} samples per pixel", done.end - done.start));
@@ -168,10 +176,15 @@ fn output_files(args: &Render) -> Result<Vec<PictureFile>, Problem> {
     paths.iter().map(|p| PictureFile::new(p)).collect()
 }
 
+/// Where the statistics go, unless to stdout (`-`).
+fn stats_file(args: &Render) -> Option<&PathBuf> {
+    args.stats.as_ref().filter(|p| p.as_os_str() != "-")
+}
+
 /// Every file can be written, none is written twice, no checkpoint is lost.
 fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
     let mut places: Vec<&Path> = files.iter().map(|f| f.path.as_path()).collect();
-    places.extend(args.stats.as_deref());
+    places.extend(stats_file(args).map(PathBuf::as_path));
     places.extend(args.checkpoint.as_deref());
     for (i, place) in places.iter().enumerate() {
         if places[..i].contains(place) {
@@ -183,6 +196,10 @@ fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
         check_writable(place)?;
     }
     match &args.checkpoint {
+        Some(path) if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("exr")) => {
+            let message = format!("the checkpoint `{}` must be an `.exr`", path.display());
+            Err(Problem::input(Diagnostic::error("unknown-format", message).help("give it the extension `.exr`")))
+        }
         Some(path) if path.exists() && !args.resume => {
             let message = format!("the checkpoint `{}` exists already", path.display());
             let help = "give --resume to go on from it, or remove it to begin anew";
@@ -195,6 +212,8 @@ fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
 /// Set what the options say; the overrides as the header keeps them.
 fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     let mut set = Settings::new(scene);
+    // Options have the last word over -D.
+    set.overrides(&args.scene.set);
     if let Some(name) = &args.integrator {
         set.type_of("--integrator", Kind::Integrator, name);
     }
@@ -223,7 +242,6 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     if let Some(time) = args.time {
         set.time(time);
     }
-    set.overrides(&args.scene.set);
     set.finish()
 }
 
