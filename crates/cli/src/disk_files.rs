@@ -28,11 +28,15 @@ impl Files for DiskFiles {
         if !full.starts_with(&self.root) {
             return Err(FileError::Outside(path.into()));
         }
-        let file = File::open(&full).map_err(other)?;
-        let about = file.metadata().map_err(other)?;
+        // Before it is opened: to open a pipe is to wait for ever.
+        let about = full.metadata().map_err(other)?;
         if !about.is_file() {
             return Err(FileError::Other { path: path.into(), why: "it is not a file".into() });
         }
+        if about.len() > limit {
+            return Err(FileError::TooLarge { path: path.into(), limit });
+        }
+        let file = File::open(&full).map_err(other)?;
         // A file may grow while it is read.
         let mut bytes = Vec::with_capacity(about.len().min(limit) as usize + 1);
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(other)?;

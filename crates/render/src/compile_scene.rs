@@ -20,6 +20,7 @@ use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, Sce
 use kirkas_geometry::{DVec3, Ray};
 
 use kirkas_scene::validate::validate;
+use std::collections::BTreeMap;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
 
 /// What the caller decides besides the description.
@@ -213,23 +214,36 @@ fn compile(
     add_area_lights(&world, &aggregates, &instances, &materials, &object_names, &mut lights, warnings);
 
     // What rays search.
-    let geometry = |parts: &[PlacedPart]| -> Vec<Geometry> {
+    let geometry = |parts: &[PlacedPart], overrides: &[u32]| -> Vec<Geometry> {
+        let is_opaque = |m: u32| materials[m as usize].is_opaque();
         parts
             .iter()
             .map(|p| Geometry {
                 shape: p.shape.clone(),
-                opaque: materials[p.info.material as usize].is_opaque(),
+                opaque: is_opaque(p.info.material) && overrides.iter().all(|&m| is_opaque(m)),
                 mask: if p.is_visible { u32::MAX } else { !PRIMARY },
             })
             .collect()
     };
+    let mut overrides = vec![Vec::new(); aggregates.len()];
+    for i in &instances {
+        overrides[i.aggregate].extend(i.material);
+    }
+    overrides.iter_mut().for_each(|o| {
+        o.sort_unstable();
+        o.dedup();
+    });
     let (open, close) = camera.shutter();
     let scene_geometry = SceneGeometry {
-        world: geometry(&world),
-        aggregates: aggregates.iter().map(|a| geometry(a)).collect(),
+        world: geometry(&world, &[]),
+        aggregates: aggregates.iter().zip(&overrides).map(|(a, o)| geometry(a, o)).collect(),
         instances: instances
             .iter()
-            .map(|i| Instance { aggregate: i.aggregate, world_from_object: i.world_from_part.clone(), mask: u32::MAX })
+            .map(|i| Instance {
+                aggregate: i.aggregate,
+                world_from_object: i.world_from_part.clone(),
+                mask: if i.is_visible { u32::MAX } else { !PRIMARY },
+            })
             .collect(),
         shutter: (open, close),
     };
@@ -309,14 +323,16 @@ fn add_area_lights(
     lights: &mut Vec<LightEntry>,
     warnings: &mut Vec<Diagnostic>,
 ) {
+    let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
     let mut add = |part: &PlacedPart, instance: Option<&InstanceInfo>| {
         let material = instance.and_then(|i| i.material).unwrap_or(part.info.material);
         let Some(emission) = &materials[material as usize].emission else { return };
         let object = instance.and_then(|i| i.object).unwrap_or(part.info.object);
         let mut name = object_names[object as usize].clone();
-        let same = lights.iter().filter(|l| l.name == name || l.name.starts_with(&format!("{name}#"))).count();
-        if same > 0 {
-            name = format!("{name}#{}", same + 1);
+        let same = counts.entry(object).or_default();
+        *same += 1;
+        if *same > 1 {
+            name = format!("{name}#{same}");
         }
         let Some(area) = part.info.surface.area() else {
             warnings.push(

@@ -96,11 +96,14 @@ impl<'a, O: Observer> Flock<'a, O> {
             self.trace_active();
 
             // Step each path.
-            let active = std::mem::take(&mut self.active);
-            for (i, t) in active.iter().enumerate() {
-                self.step(t, self.hits[i]);
+            let (active, hits) = (std::mem::take(&mut self.active), std::mem::take(&mut self.hits));
+            for (t, hit) in active.iter().zip(&hits) {
+                self.step(t, *hit);
+                if self.shadows.len() >= MOST_SHADOWS {
+                    self.trace_shadows();
+                }
             }
-            self.active = active;
+            (self.active, self.hits) = (active, hits);
 
             // Ask whether the lights are seen.
             self.trace_shadows();
@@ -172,7 +175,11 @@ impl<'a, O: Observer> Flock<'a, O> {
         if let Some(s) = &surface {
             self.observer.hit(slot.id, &t.path, s);
         }
-        if self.renderer.keeps_aovs && t.path.kind == RayKind::Camera && slot.aov.is_none() {
+        let is_seen = |s: &SurfaceHit| {
+            scene.material(s).medium.is_none() || !scene.is_covered(&t.path.media, s.material, s.is_front)
+        };
+        let looks = self.renderer.keeps_aovs && t.path.kind == RayKind::Camera && slot.aov.is_none();
+        if looks && surface.as_ref().is_none_or(is_seen) {
             slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(&t.path, s)));
         }
         self.out.clear();
@@ -208,7 +215,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 let mut next = Vec::new();
                 for (i, (s, slot)) in shadows.drain(..).enumerate() {
                     match self.hits[i] {
-                        None => self.answer(&s, slot, false),
+                        None => self.answer(&ShadowRay { light: scene.arrived(&s), ..s }, slot, false),
                         Some(hit) => match scene.weakened(&s, &hit) {
                             Some(on) => next.push((on, slot)),
                             None => self.answer(&s, slot, true),
@@ -251,6 +258,9 @@ impl<'a, O: Observer> Flock<'a, O> {
         self.free.push(slot_index);
     }
 }
+
+/// Shadow rays that wait at most (but for those of one step): memory stays bounded with any number of lights.
+const MOST_SHADOWS: usize = 4096;
 
 /// `Slot::pixel` of a slot whose sample is on the film already.
 const DONE: usize = usize::MAX;

@@ -31,7 +31,7 @@ pub(crate) struct Placement {
 /// Groups within groups, instances of instances: more is refused.
 const DEEPEST: usize = 256;
 /// Placed aggregates: more is refused.
-const MOST_INSTANCES: usize = 1 << 26;
+const MOST_INSTANCES: usize = 1 << 22;
 
 /// Put every object of `d` where it belongs.
 pub(crate) fn place_objects(
@@ -96,6 +96,7 @@ struct Nested {
     prototype: usize,
     object: Option<u32>,
     material: Option<u32>,
+    is_visible: bool,
 }
 
 /// What an object inherits from above.
@@ -193,7 +194,7 @@ impl Builder<'_> {
                 self.prototypes.push(moved);
                 let placement = m.within(&AnimatedTransform::still(context.matrix));
                 let prototype = self.prototypes.len() - 1;
-                space.nested.push(Nested { placement, prototype, object: None, material: None });
+                space.nested.push(Nested { placement, prototype, object: None, material: None, is_visible: true });
                 Ok(())
             }
             other => {
@@ -208,11 +209,10 @@ impl Builder<'_> {
     fn fill(&mut self, i: usize, context: &Context, space: &mut Space) -> Result<(), Diagnostic> {
         match self.params[i].spec().name {
             "group" => {
-                for child in std::mem::take(&mut self.children[i]) {
-                    self.visit(child, context, space)?;
-                    self.children[i].push(child);
-                }
-                Ok(())
+                let was_open = std::mem::replace(&mut self.is_open[i], true);
+                let result = self.children[i].clone().into_iter().try_for_each(|child| self.visit(child, context, space));
+                self.is_open[i] = was_open;
+                result
             }
             "instance" => self.instance(i, context, space),
             _ => self.shape(i, context, space),
@@ -243,7 +243,8 @@ impl Builder<'_> {
             }
         };
         let placement = AnimatedTransform::still(context.matrix);
-        space.nested.push(Nested { placement, prototype, object: Some(i as u32), material: context.material });
+        let is_visible = context.is_visible;
+        space.nested.push(Nested { placement, prototype, object: Some(i as u32), material: context.material, is_visible });
         Ok(())
     }
 
@@ -349,6 +350,7 @@ fn flatten(prototypes: Vec<Space>, roots: Vec<Nested>, placed: &mut Placement) -
                 still,
                 object: n.object,
                 material: n.material,
+                is_visible: n.is_visible,
             });
         }
         for inner in nested_of[n.prototype].iter().rev() {
@@ -357,6 +359,7 @@ fn flatten(prototypes: Vec<Space>, roots: Vec<Nested>, placed: &mut Placement) -
                 prototype: inner.prototype,
                 object: n.object.or(inner.object),
                 material: n.material.or(inner.material),
+                is_visible: n.is_visible && inner.is_visible,
             });
         }
     }

@@ -158,6 +158,7 @@ impl Renderer<'_> {
             branch: 0,
             media: self.scene.camera_media,
             passed: 0,
+            travelled: 0.0,
         };
         Start { path, weight: place.weight, uses_lens, uses_time }
     }
@@ -168,7 +169,7 @@ impl Renderer<'_> {
         let p = hit.position.as_vec3();
         AovSample {
             is_hit: true,
-            depth: hit.t * path.ray.direction.length(),
+            depth: path.travelled + hit.t * path.ray.direction.length(),
             normal: n.to_array(),
             albedo: self.scene.material(hit).albedo(&self.scene.textures, &hit.texture),
             position: p.to_array(),

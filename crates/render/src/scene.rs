@@ -12,7 +12,8 @@ use kirkas_geometry::hash::{combine, unit_f32};
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
-use kirkas_optics::{Bsdf, Interface, Light, Medium};
+use kirkas_optics::medium::transmittance;
+use kirkas_optics::{Bsdf, Interface, Lanes, Light, Medium};
 use std::sync::Arc;
 
 /// What is known of one geometry of the accelerator.
@@ -41,6 +42,8 @@ pub struct InstanceInfo {
     pub object: Option<u32>,
     /// Stands in for the parts' material.
     pub material: Option<u32>,
+    /// Camera rays see it.
+    pub is_visible: bool,
 }
 
 /// Mask of camera rays.
@@ -256,13 +259,32 @@ impl Scene {
         }
     }
 
+    /// What is left of light after `distance` through the body that rules in `media`.
+    pub fn clearness(&self, media: &MediumStack, distance: f64) -> Light {
+        match self.body_of(media) {
+            Some(body) => transmittance(Lanes::RGB.unbounded(body.absorption), distance as f32),
+            None => Light::splat(1.0),
+        }
+    }
+
+    /// What is left of a filtered shadow ray's light on its last way, to the light.
+    pub fn arrived(&self, shadow: &ShadowRay) -> Light {
+        let length = if shadow.ray.t_max.is_finite() { shadow.ray.direction.length() } else { f32::INFINITY };
+        shadow.light * self.clearness(&shadow.media, f64::from(length))
+    }
+
     /// A filtered shadow ray behind the surface it met, tinted by what that lets through; `None` if it lets nothing through.
     pub fn weakened(&self, shadow: &ShadowRay, hit: &Hit) -> Option<ShadowRay> {
         const MOST: u32 = 256;
         let s = self.surface(&shadow.ray, hit);
         let material = self.material(&s);
         let tint = material.straight_transmittance(&self.textures, &s.texture)?;
-        let light = shadow.light * tint;
+        let way = f64::from(hit.t * shadow.ray.direction.length());
+        let mut light = shadow.light * self.clearness(&shadow.media, way);
+        if !self.is_covered(&shadow.media, s.material, s.is_front) {
+            light *= tint;
+        }
+        let media = if s.is_front { shadow.media.entered(s.material) } else { shadow.media.left(s.material) };
         if light.is_black() || shadow.passed >= MOST {
             return None;
         }
@@ -277,7 +299,7 @@ impl Scene {
                 ray.t_max = 0.0;
             }
         }
-        Some(ShadowRay { ray, light, passed: shadow.passed + 1, ..*shadow })
+        Some(ShadowRay { ray, light, media, passed: shadow.passed + 1, ..*shadow })
     }
 
     /// Opacity of a hit on a surface with an alpha map.

@@ -151,9 +151,11 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     seconds.render = render_started.elapsed().as_secs_f64();
 
     // Write.
+    // The checkpoint first: should the pictures fail, nothing is lost.
+    let stopped = conductor.finish(&film, wanted);
     let done = tell_samples(&mut header, &film, samples.start);
     development.write(&film, &header, &files)?;
-    let stopped = conductor.finish(&film, wanted)?;
+    let stopped = stopped?;
     seconds.total = started.elapsed().as_secs_f64();
     if let Some(path) = &args.stats {
         let warnings = &warnings.diagnostics;

@@ -51,8 +51,25 @@ pub fn write_part(film: &Film, image: &mut Image) {
     image.push("kirkas.count.taken", ChannelData::U32(film.plane(|t, i| t.counts[i].taken)));
     image.push("kirkas.count.invalid", ChannelData::U32(film.plane(|t, i| t.counts[i].invalid)));
     let text = |s: String| Attribute::Text(s);
-    image.attributes.insert("kirkas.groups".into(), text(film.layout.groups.join("\n")));
+    image.attributes.insert("kirkas.groups".into(), text(film.layout.groups.iter().map(|g| escaped(g)).collect::<Vec<_>>().join("\n")));
     image.attributes.insert("kirkas.aovs".into(), Attribute::Number(f64::from(film.layout.aovs.0)));
+}
+
+/// A name on one line.
+fn escaped(name: &str) -> String {
+    name.replace('\\', "\\\\").replace('\n', "\\n")
+}
+
+fn unescaped(line: &str) -> String {
+    let mut out = String::new();
+    let mut chars = line.chars();
+    while let Some(c) = chars.next() {
+        match (c, c == '\\') {
+            (_, true) => out.push(if chars.next() == Some('n') { '\n' } else { '\\' }),
+            (c, _) => out.push(c),
+        }
+    }
+    out
 }
 
 /// The film that [`write_part`] stored.
@@ -60,7 +77,10 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
     let missing = |n: &str| PartError::NotAPart(n.to_string());
     let groups: Vec<String> = match image.attributes.get("kirkas.groups") {
         Some(Attribute::Text(t)) if t.is_empty() => Vec::new(),
-        Some(Attribute::Text(t)) => t.split('\n').map(String::from).collect(),
+        Some(Attribute::Text(t)) if t.matches('\n').count() >= image.channels.len() => {
+            return Err(PartError::Different("it names more light groups than it has layers".into()));
+        }
+        Some(Attribute::Text(t)) => t.split('\n').map(unescaped).collect(),
         _ => return Err(missing("kirkas.groups")),
     };
     let aovs = match image.attributes.get("kirkas.aovs") {

@@ -79,6 +79,8 @@ pub struct PathState {
     pub media: MediumStack,
     /// Surfaces passed without an event (an overlapped boundary) since the last bounce.
     pub passed: u32,
+    /// Distance travelled through them.
+    pub travelled: f32,
 }
 
 /// A ray that asks whether light arrives.
@@ -96,6 +98,8 @@ pub struct ShadowRay {
     pub lamp: u32,
     /// Transparent surfaces weaken it instead of blocking.
     pub is_filtered: bool,
+    /// Bodies it is inside of.
+    pub media: MediumStack,
     /// Surfaces it has been weakened by.
     pub passed: u32,
 }

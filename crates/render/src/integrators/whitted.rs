@@ -30,8 +30,7 @@ use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::hash::{combine, of_name};
 use kirkas_geometry::{DVec3, Vec3};
-use kirkas_optics::medium::transmittance;
-use kirkas_optics::{Bsdf, Interface, Lanes, Light, Lobe, LobeSet, Mode};
+use kirkas_optics::{Bsdf, Interface, Light, Lobe, LobeSet, Mode};
 use kirkas_scene::spec::{NOT_NEGATIVE, UNIT};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -103,10 +102,8 @@ impl Integrator for Whitted {
         let mut path = *path;
 
         // Weaken the path by the body it went through.
-        if let (Some(hit), Some(body)) = (hit, scene.body_of(&path.media)) {
-            let absorption = Lanes::RGB.unbounded(body.absorption);
-            let length = path.ray.direction.length();
-            path.throughput *= transmittance(absorption, hit.t * length);
+        if let Some(hit) = hit {
+            path.throughput *= scene.clearness(&path.media, f64::from(hit.t * path.ray.direction.length()));
         }
 
         // What left the scene sees the background.
@@ -127,7 +124,8 @@ impl Integrator for Whitted {
             let media = if entering { path.media.entered(hit.material) } else { path.media.left(hit.material) };
             if path.passed < MOST_PASSED {
                 let ray = hit.ray_towards(path.ray.direction.as_dvec3(), &path.ray);
-                out.paths.push(PathState { ray, media, passed: path.passed + 1, ..path });
+                let travelled = path.travelled + hit.t * path.ray.direction.length();
+                out.paths.push(PathState { ray, media, passed: path.passed + 1, travelled, ..path });
             }
             return;
         }
@@ -169,9 +167,11 @@ impl Whitted {
         let material = scene.material(hit);
         let interface = match material.medium {
             Some(inside) => {
-                let others = path.media.left(hit.material);
+                let others = if hit.is_front { path.media } else { path.media.left(hit.material) };
                 let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
-                Interface { eta_above: outside, eta_below: inside.ior }
+                // A body that was never entered (its boundary touches another's) is left without an event.
+                let is_known = hit.is_front || path.media.materials().contains(&hit.material);
+                Interface { eta_above: outside, eta_below: if is_known { inside.ior } else { outside } }
             }
             None => Interface::VACUUM,
         };
@@ -203,6 +203,7 @@ impl Whitted {
         if shaded.is_empty() {
             return;
         }
+        let boundary = scene.material(hit).medium.is_some();
         let traced = if path.depth < self.max_depth { bsdf.traced_lobes() } else { LobeSet::NONE };
         for (number, light) in scene.lights.iter().enumerate() {
             // A glossy surface finds area lights with its own rays.
@@ -223,6 +224,14 @@ impl Whitted {
                 if weight.is_black() || side == 0.0 || (side > 0.0) != (wi.z > 0.0) {
                     continue;
                 }
+                let media = match (boundary, wi.z > 0.0, hit.is_front) {
+                    (true, false, true) => path.media.entered(hit.material),
+                    (true, true, false) => path.media.left(hit.material),
+                    _ => path.media,
+                };
+                // What a straight ray meets weakens it as it goes; otherwise it stays in one body all the way.
+                let is_filtered = self.shadows == Shadows::Transparent;
+                let weight = if is_filtered { weight } else { weight * scene.clearness(&media, s.distance(hit.position)) };
                 if self.shadows == Shadows::None {
                     out.contributions.push((weight, light.group));
                     continue;
@@ -233,7 +242,8 @@ impl Whitted {
                     group: light.group,
                     branch: path.branch,
                     lamp: number as u32,
-                    is_filtered: self.shadows == Shadows::Transparent,
+                    is_filtered,
+                    media,
                     passed: 0,
                 });
             }
@@ -312,6 +322,7 @@ impl Whitted {
             branch: combine(path.branch, u64::from(number) << 8 | lobe as u64),
             media,
             passed: 0,
+            travelled: 0.0,
         });
     }
 }

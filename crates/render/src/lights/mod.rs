@@ -48,6 +48,13 @@ pub struct LightSample {
     pub light: Light,
 }
 
+impl LightSample {
+    /// How far away the light is; infinite without a target.
+    pub fn distance(&self, from: DVec3) -> f64 {
+        self.target.as_ref().map_or(f64::INFINITY, |t| (t.position - from).length())
+    }
+}
+
 /// A light that is sampled.
 #[derive(Clone)]
 pub enum Lamp {
