@@ -57,13 +57,18 @@ const SIZE: u32 = 512;
 impl Case {
     fn kirkas(&self, kirkas: &Path) -> Command {
         let mut c = Command::new(kirkas);
-        c.arg("render").arg(&self.toml).arg("-o").arg(self.toml.with_extension("kirkas.png")).args(["--quiet", "--threads", "2"]);
+        c.arg("render").arg(&self.toml).arg("-o").arg(self.toml.with_extension("kirkas.png")).args([
+            "--quiet",
+            "--threads",
+            "2",
+        ]);
         c
     }
 
     fn povray(&self) -> Command {
         let mut c = Command::new("povray");
-        c.arg(format!("+I{}", self.pov.display())).arg(format!("+O{}", self.pov.with_extension("povray.png").display()));
+        c.arg(format!("+I{}", self.pov.display()))
+            .arg(format!("+O{}", self.pov.with_extension("povray.png").display()));
         // Every pixel 2 x 2 samples: antialiasing method 1 with threshold 0 always supersamples.
         c.args([&format!("+W{SIZE}"), &format!("+H{SIZE}"), "+A0.0", "+AM1", "+R2", "-J", "+FN8", "-D", "-P", "+WT2"]);
         c
@@ -129,9 +134,8 @@ fn flake(out: &mut String, center: [f64; 3], radius: f64, frame: [[f64; 3]; 3], 
 /// The frame turned the shortest way so that its last axis becomes `z`.
 fn turned(frame: [[f64; 3]; 3], z: [f64; 3]) -> [[f64; 3]; 3] {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let (axis, c) = (cross(frame[2], z), dot(frame[2], z));
     let turn = |v: [f64; 3]| {
         let (w, s) = (cross(axis, v), dot(axis, v) / (1.0 + c));
@@ -149,7 +153,9 @@ fn mesh(folder: &Path, n: usize) -> Result<Case, String> {
         for j in 0..columns {
             let (theta, phi) =
                 (std::f64::consts::PI * i as f64 / rows as f64, std::f64::consts::TAU * j as f64 / columns as f64);
-            let r = 1.0 + 0.05 * (9.0 * theta).sin() * (11.0 * phi).sin() + 0.01 * (60.0 * theta).sin() * (70.0 * phi).cos();
+            let r = 1.0
+                + 0.05 * (9.0 * theta).sin() * (11.0 * phi).sin()
+                + 0.01 * (60.0 * theta).sin() * (70.0 * phi).cos();
             points.push([r * theta.sin() * phi.cos(), r * theta.cos(), r * theta.sin() * phi.sin()].map(|x| x as f32));
         }
     }
@@ -172,7 +178,8 @@ fn mesh(folder: &Path, n: usize) -> Result<Case, String> {
         "{POV_HEAD}global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 }}\n\
          camera {{ perspective location <1.2, 1.4, 2.6> right -x up y sky y angle 45 look_at <0, 0, 0> }}\n\
          #declare C = texture {{ pigment {{ rgb 1 }} finish {{ ambient 0.1 diffuse 0.7 }} }}\n\
-         plane {{ y, -1.1 texture {{ C }} }}\nmesh2 {{ vertex_vectors {{ {}", points.len()
+         plane {{ y, -1.1 texture {{ C }} }}\nmesh2 {{ vertex_vectors {{ {}",
+        points.len()
     );
     for p in &points {
         let _ = write!(pov, ",<{},{},{}>", p[0], p[1], p[2]);

@@ -27,7 +27,11 @@ const CHORES: &[Chore] = &[
     Chore { name: "gallery", doc: "render every lecture scene into docs/gallery [NAME...]", run: gallery::run },
     Chore { name: "bless", doc: "accept new snapshots and reference hashes", run: test::bless },
     Chore { name: "povray", doc: "six scenes beside POV-Ray, picture against picture", run: povray::run },
-    Chore { name: "bench", doc: "time against POV-Ray, start to written image [--quick] [--json FILE]", run: bench::run },
+    Chore {
+        name: "bench",
+        doc: "time against POV-Ray, start to written image [--quick] [--json FILE]",
+        run: bench::run,
+    },
     Chore { name: "fuzz", doc: "run every fuzz target [SECONDS each, 600]", run: fuzz::run },
     Chore { name: "mutants", doc: "mutation-test optics and the integrators [COUNT, 100]", run: mutants::run },
     Chore { name: "dist", doc: "a stripped binary archive for people without a toolchain", run: dist::run },

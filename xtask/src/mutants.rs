@@ -52,7 +52,17 @@ struct Verdict {
 fn judge(names: &[&str], skipped: &[&str]) -> Result<Verdict, String> {
     let mut c = program("cargo");
     c.env("CARGO_TARGET_DIR", target_dir().join("mutants"));
-    c.args(["mutants", "--workspace", "--no-shuffle", "--profile", "checked", "--timeout", "180", "--baseline", "skip"]);
+    c.args([
+        "mutants",
+        "--workspace",
+        "--no-shuffle",
+        "--profile",
+        "checked",
+        "--timeout",
+        "180",
+        "--baseline",
+        "skip",
+    ]);
     for f in FILES {
         c.args(["--file", f]);
     }

@@ -43,9 +43,8 @@ fn compare(kirkas: &Path, folder: &Path, scene: &Scene) -> Result<f64, String> {
             .arg(format!("+O{}", file("_povray.png").display()))
             .args([&format!("+W{WIDTH}"), &format!("+H{HEIGHT}"), "+FN8", "File_Gamma=1.0", "-D", "-P", "-A"]),
     )?;
-    let text = output(
-        Command::new(kirkas).arg("diff").arg(file("_kirkas.png")).arg(file("_povray.png")).arg("--verbose"),
-    )?;
+    let text =
+        output(Command::new(kirkas).arg("diff").arg(file("_kirkas.png")).arg(file("_povray.png")).arg("--verbose"))?;
     let line = text.lines().find_map(|l| l.strip_prefix("pixels within 3/255: ")).ok_or("diff said nothing")?;
     line.trim_end_matches(" %").parse().map_err(|e| format!("{line}: {e}"))
 }
@@ -81,8 +80,14 @@ fn scenes() -> Vec<Scene> {
             "mirror",
             vec![
                 (Body::Floor(0.0), Surface::Mirror { color: [0.7; 3], ambient: 0.1, diffuse: 0.5, reflect: 0.3 }),
-                (Body::Sphere([-1.1, 1.0, 0.0], 1.0), Surface::Mirror { color: [1.0; 3], ambient: 0.0, diffuse: 0.0, reflect: 0.8 }),
-                (Body::Sphere([1.1, 1.0, 0.0], 1.0), Surface::Mirror { color: [0.9, 0.6, 0.2], ambient: 0.1, diffuse: 0.4, reflect: 0.5 }),
+                (
+                    Body::Sphere([-1.1, 1.0, 0.0], 1.0),
+                    Surface::Mirror { color: [1.0; 3], ambient: 0.0, diffuse: 0.0, reflect: 0.8 },
+                ),
+                (
+                    Body::Sphere([1.1, 1.0, 0.0], 1.0),
+                    Surface::Mirror { color: [0.9, 0.6, 0.2], ambient: 0.1, diffuse: 0.4, reflect: 0.5 },
+                ),
             ],
         ),
         Scene {

@@ -22,7 +22,8 @@ pub fn run(extra: &[String]) -> Outcome {
 
 /// Tests compare native bits with wasm's, so the target must be there.
 fn add_web_target() -> Outcome {
-    let installed = std::process::Command::new("rustc").args(["--print", "target-libdir", "--target", WEB_TARGET]).output();
+    let installed =
+        std::process::Command::new("rustc").args(["--print", "target-libdir", "--target", WEB_TARGET]).output();
     let has_core = installed.is_ok_and(|o| {
         let dir = String::from_utf8_lossy(&o.stdout).trim().to_string();
         o.status.success() && std::path::Path::new(&dir).is_dir()

@@ -31,8 +31,20 @@ const ABSENT: &[(&str, &[&str])] = &[
 
 /// Calls that give other bits on other platforms, in crates whose results are pictures.
 const PLATFORM_MATH: [&str; 14] = [
-    ".sin()", ".cos()", ".tan()", ".asin()", ".acos()", ".atan()", ".atan2(", ".exp()", ".ln()", ".powf(", ".powi(",
-    ".mul_add(", ".cbrt()", ".sin_cos()",
+    ".sin()",
+    ".cos()",
+    ".tan()",
+    ".asin()",
+    ".acos()",
+    ".atan()",
+    ".atan2(",
+    ".exp()",
+    ".ln()",
+    ".powf(",
+    ".powi(",
+    ".mul_add(",
+    ".cbrt()",
+    ".sin_cos()",
 ];
 
 /// Lines in a file from which a second look is asked.
@@ -81,7 +93,10 @@ fn floors(found: &mut Vec<String>) {
         for dep in deps.lines().filter_map(|l| l.strip_prefix("kirkas-")) {
             let dep = dep.split(['.', ' ', '=']).next().unwrap_or_default();
             if !allowed.contains(&dep) {
-                found.push(format!("{}: `{name}` must not depend on `{dep}`: dependencies run down only", path.display()));
+                found.push(format!(
+                    "{}: `{name}` must not depend on `{dep}`: dependencies run down only",
+                    path.display()
+                ));
             }
         }
     }
@@ -136,9 +151,15 @@ fn check_manual(path: &Path, found: &mut Vec<String>) {
 
 /// Pages that must be there.
 fn pages(found: &mut Vec<String>) {
-    for page in
-        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "BENCHMARKS.md", "LICENSE-MIT", "LICENSE-APACHE"]
-    {
+    for page in [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "BENCHMARKS.md",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+    ] {
         if !root().join(page).is_file() {
             found.push(format!("{page} is missing"));
         }

@@ -58,7 +58,8 @@ impl Background {
             let l = n.list()?;
             Some((l.first()?.number()? as f32, light(read_color(&l.get(1)?.value)?)))
         };
-        let stops = p.entity.params.get("stops").and_then(|n| n.list()).unwrap_or(&[]).iter().filter_map(stop).collect();
+        let stops =
+            p.entity.params.get("stops").and_then(|n| n.list()).unwrap_or(&[]).iter().filter_map(stop).collect();
         let up = p.vector("up");
         let up = Vec3::new(up[0] as f32, up[1] as f32, up[2] as f32).normalize_or(Vec3::Y);
         Background::Gradient { up, stops }

@@ -18,8 +18,7 @@ const BRUTE_FORCE: TypeSpec = TypeSpec {
 };
 
 /// Every accelerator type.
-pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] =
-    &[(&BVH2, AccelKind::Bvh2), (&BRUTE_FORCE, AccelKind::BruteForce)];
+pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] = &[(&BVH2, AccelKind::Bvh2), (&BRUTE_FORCE, AccelKind::BruteForce)];
 
 /// The catalogue of this build.
 pub fn catalog() -> Catalog {

@@ -20,8 +20,8 @@ use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, Sce
 use kirkas_geometry::{DVec3, Ray};
 
 use kirkas_scene::validate::validate;
-use std::collections::BTreeMap;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
+use std::collections::BTreeMap;
 
 /// What the caller decides besides the description.
 #[derive(Clone, Debug, Default)]
@@ -97,7 +97,8 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     let film = film_layout(&singles.params(Kind::Film), options).map_err(|d| vec![d])?;
     let scene = compile(description, &catalog, assets, &singles, film.size, &mut warnings)?;
     let (p, s) = (singles.params(Kind::Film), singles.params(Kind::Sampler));
-    let filter = Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
+    let filter =
+        Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
     let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
     Ok(Prepared {
         integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
@@ -137,7 +138,8 @@ impl<'a> Singles<'a> {
 
 fn bad_filter(p: &Params) -> Diagnostic {
     Diagnostic::error("bad-filter", "this filter cannot have this radius")
-        .at(p.span("filter_radius"), "here").help("leave `filter_radius` out for the filter's own")
+        .at(p.span("filter_radius"), "here")
+        .help("leave `filter_radius` out for the filter's own")
 }
 
 fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> {
@@ -249,24 +251,31 @@ fn compile(
     };
     let kind_name = singles.params(Kind::Accelerator).spec().name;
     let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::Bvh2, |a| a.1);
-    let accel = Accel::build(kind, scene_geometry, &Threads)
-        .map_err(|e| one(Diagnostic::error("bad-geometry", e.to_string()).help("mend the mesh or the object that it names")))?;
+    let accel = Accel::build(kind, scene_geometry, &Threads).map_err(|e| {
+        one(Diagnostic::error("bad-geometry", e.to_string()).help("mend the mesh or the object that it names"))
+    })?;
 
     if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {
         let background = Background::new(&singles.params(Kind::Background));
         if background.is_black() {
             warnings.push(
-                Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black")
-                    .help("add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour"),
+                Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black").help(
+                    "add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour",
+                ),
             );
         }
     }
     if open == close {
-        if let Some(moving) = d.all(Kind::Object).iter().chain(d.all(Kind::Camera)).find(|e| e.params.get("motion").is_some()) {
+        if let Some(moving) =
+            d.all(Kind::Object).iter().chain(d.all(Kind::Camera)).find(|e| e.params.get("motion").is_some())
+        {
             warnings.push(
-                Diagnostic::warning("no-shutter", format!("`{}` moves, but the shutter is open for no time", moving.name.text))
-                    .at(moving.name.span, "moves")
-                    .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time"),
+                Diagnostic::warning(
+                    "no-shutter",
+                    format!("`{}` moves, but the shutter is open for no time", moving.name.text),
+                )
+                .at(moving.name.span, "moves")
+                .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time"),
             );
         }
     }
@@ -292,7 +301,8 @@ fn compile(
 
     // Bodies that the camera stands in.
     let middle = (f64::from(resolution.0) / 2.0, f64::from(resolution.1) / 2.0);
-    let start = scene.camera.ray(&crate::camera::CameraSample { film: middle, lens: (0.5, 0.5), time: open }, resolution);
+    let start =
+        scene.camera.ray(&crate::camera::CameraSample { film: middle, lens: (0.5, 0.5), time: open }, resolution);
     scene.camera_media = bodies_around(&scene, &start);
     if let Some(body) = scene.ruling(&scene.camera_media) {
         scene.camera_gain = 1.0 / scene.materials[body as usize].radiance_gain;
@@ -336,8 +346,11 @@ fn add_area_lights(
         }
         let Some(area) = part.info.surface.area() else {
             warnings.push(
-                Diagnostic::warning("unsampled-light", format!("`{name}` shines, but lights nothing: its shape cannot be sampled"))
-                    .help("use a rectangle, disk, sphere or mesh, not stretched, as the lamp"),
+                Diagnostic::warning(
+                    "unsampled-light",
+                    format!("`{name}` shines, but lights nothing: its shape cannot be sampled"),
+                )
+                .help("use a rectangle, disk, sphere or mesh, not stretched, as the lamp"),
             );
             return;
         };
@@ -366,7 +379,8 @@ fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
     if scene.materials.iter().all(|m| m.medium.is_none()) {
         return media;
     }
-    let ways = [DVec3::new(0.2917, 0.8713, 0.3947), DVec3::new(0.5113, -0.6139, 0.6015), DVec3::new(-0.8291, 0.2171, -0.5153)];
+    let ways =
+        [DVec3::new(0.2917, 0.8713, 0.3947), DVec3::new(0.5113, -0.6139, 0.6015), DVec3::new(-0.8291, 0.2171, -0.5153)];
     for way in ways {
         let mut met = Vec::new();
         let mut ray = Ray { direction: way.as_vec3(), mask: u32::MAX, ..*start };
@@ -385,4 +399,3 @@ fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
     }
     media
 }
-

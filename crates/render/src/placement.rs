@@ -146,9 +146,12 @@ impl Builder<'_> {
             };
             let parent = self.numbers[name];
             if self.params[parent].spec().name != "group" {
-                return Err(Diagnostic::error("bad-parent", format!("`{name}` is a {}, and only groups have children", self.params[parent].spec().name))
-                    .at(p.span("parent"), "not a group")
-                    .help("make the parent a `group`, or put both into one"));
+                return Err(Diagnostic::error(
+                    "bad-parent",
+                    format!("`{name}` is a {}, and only groups have children", self.params[parent].spec().name),
+                )
+                .at(p.span("parent"), "not a group")
+                .help("make the parent a `group`, or put both into one"));
             }
             parents[i] = Some(parent);
             self.children[parent].push(i);
@@ -161,9 +164,12 @@ impl Builder<'_> {
             todo.extend(&self.children[i]);
         }
         if let Some(i) = reached.iter().position(|r| !r) {
-            return Err(Diagnostic::error("parent-cycle", format!("`{}` is, through its parents, its own parent", self.params[i].entity.name.text))
-                .at(self.params[i].span("parent"), "leads back here")
-                .help("remove one `parent`"));
+            return Err(Diagnostic::error(
+                "parent-cycle",
+                format!("`{}` is, through its parents, its own parent", self.params[i].entity.name.text),
+            )
+            .at(self.params[i].span("parent"), "leads back here")
+            .help("remove one `parent`"));
         }
         Ok(roots)
     }
@@ -174,9 +180,12 @@ impl Builder<'_> {
             return Ok(());
         }
         if context.depth > DEEPEST {
-            return Err(Diagnostic::error("too-deep", format!("`{}` lies more than {DEEPEST} groups deep", p.entity.name.text))
-                .at(p.entity.name.span, "here")
-                .help("flatten some of the groups"));
+            return Err(Diagnostic::error(
+                "too-deep",
+                format!("`{}` lies more than {DEEPEST} groups deep", p.entity.name.text),
+            )
+            .at(p.entity.name.span, "here")
+            .help("flatten some of the groups"));
         }
         let mut inner = *context;
         inner.depth += 1;
@@ -210,7 +219,8 @@ impl Builder<'_> {
         match self.params[i].spec().name {
             "group" => {
                 let was_open = std::mem::replace(&mut self.is_open[i], true);
-                let result = self.children[i].clone().into_iter().try_for_each(|child| self.visit(child, context, space));
+                let result =
+                    self.children[i].clone().into_iter().try_for_each(|child| self.visit(child, context, space));
                 self.is_open[i] = was_open;
                 result
             }
@@ -244,7 +254,13 @@ impl Builder<'_> {
         };
         let placement = AnimatedTransform::still(context.matrix);
         let is_visible = context.is_visible;
-        space.nested.push(Nested { placement, prototype, object: Some(i as u32), material: context.material, is_visible });
+        space.nested.push(Nested {
+            placement,
+            prototype,
+            object: Some(i as u32),
+            material: context.material,
+            is_visible,
+        });
         Ok(())
     }
 
@@ -336,8 +352,11 @@ fn flatten(prototypes: Vec<Space>, roots: Vec<Nested>, placed: &mut Placement) -
     while let Some(n) = todo.pop() {
         steps += 1;
         if steps > MOST_INSTANCES {
-            return Err(Diagnostic::error("too-many-instances", format!("the scene places more than {MOST_INSTANCES} instances"))
-                .help("instance smaller groups, or nest fewer instances in instances"));
+            return Err(Diagnostic::error(
+                "too-many-instances",
+                format!("the scene places more than {MOST_INSTANCES} instances"),
+            )
+            .help("instance smaller groups, or nest fewer instances in instances"));
         }
         if let Some(aggregate) = aggregate_of[n.prototype] {
             let still = (!n.placement.is_moving()).then(|| {

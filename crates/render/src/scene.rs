@@ -123,7 +123,14 @@ impl SurfaceHit {
     pub fn shadow_ray(&self, s: &LightSample, like: &Ray) -> Ray {
         let origin = offset_origin(self.position, self.error, self.normal, s.direction);
         let Some(target) = &s.target else {
-            return Ray { origin, direction: s.direction.as_vec3(), t_min: 0.0, t_max: f32::INFINITY, mask: SECONDARY, ..*like };
+            return Ray {
+                origin,
+                direction: s.direction.as_vec3(),
+                t_min: 0.0,
+                t_max: f32::INFINITY,
+                mask: SECONDARY,
+                ..*like
+            };
         };
         // End clear of the light's own surface, short of it by the rounding error of direction and parameter.
         let end = offset_origin(target.position, target.error, target.normal, -s.direction);

@@ -47,7 +47,9 @@ pub fn run(args: &Diff) -> Result<Outcome, Problem> {
     if let Some(path) = &args.output {
         if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("png")) {
             let message = format!("`{}`: the picture of differences is a `.png`", path.display());
-            return Err(Problem::input(Diagnostic::error("unknown-format", message).help("give it the extension `.png`")));
+            return Err(Problem::input(
+                Diagnostic::error("unknown-format", message).help("give it the extension `.png`"),
+            ));
         }
         check_writable(path)?;
         check_no_loss([path.as_path()], &[args.a.clone(), args.b.clone()])?;

@@ -127,7 +127,12 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let development = development(args, &prepared, aovs);
     let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| scene.root.join(k)).collect();
     let layers = development.aov_files(&files);
-    let outputs = files.iter().map(|f| &f.path).chain(layers.iter().map(|l| &l.0)).chain(stats_file(args)).chain(&args.checkpoint);
+    let outputs = files
+        .iter()
+        .map(|f| &f.path)
+        .chain(layers.iter().map(|l| &l.0))
+        .chain(stats_file(args))
+        .chain(&args.checkpoint);
     check_no_loss(outputs.map(PathBuf::as_path), &inputs)?;
 
     // Begin, or go on.

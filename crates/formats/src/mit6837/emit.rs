@@ -22,8 +22,12 @@ pub(super) fn emit(scene: Scene, d: &mut Description, warnings: &mut Vec<Diagnos
 
 /// What the course's program does when it is given no flags.
 fn course_settings(d: &mut Description) {
-    let film =
-        Map::default().with("width", 200_i64).with("height", 200_i64).with("filter", "point").with("shift", [-0.5, 0.5]).with("tone", "raw");
+    let film = Map::default()
+        .with("width", 200_i64)
+        .with("height", 200_i64)
+        .with("filter", "point")
+        .with("shift", [-0.5, 0.5])
+        .with("tone", "raw");
     let integrator = Map::default()
         .with("max_depth", 0_i64)
         .with("min_contribution", 0.01)

@@ -24,7 +24,8 @@ fn web_assembly_makes_the_same_picture() {
     let engine = wasmi::Engine::default();
     let module = wasmi::Module::new(&engine, &bytes).expect("a sound module");
     let mut store = wasmi::Store::new(&engine, ());
-    let instance = wasmi::Linker::new(&engine).instantiate_and_start(&mut store, &module).expect("it asks its host for nothing");
+    let instance =
+        wasmi::Linker::new(&engine).instantiate_and_start(&mut store, &module).expect("it asks its host for nothing");
     let hash = instance.get_typed_func::<(), u64>(&store, "kirkas_film_hash").expect("it is exported");
     let there = hash.call(&mut store, ()).expect("no trap");
     assert_eq!(there, kirkas_probe::film_hash());
@@ -35,7 +36,12 @@ fn built_for_the_web() -> PathBuf {
     let target = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("web");
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["rustc", "--quiet", "--release", "--lib", "--crate-type", "cdylib"]);
-    cargo.args(["--target", "wasm32-unknown-unknown", "--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")]);
+    cargo.args([
+        "--target",
+        "wasm32-unknown-unknown",
+        "--manifest-path",
+        concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"),
+    ]);
     // Flags for this machine are not for that one, and a quick build serves here.
     cargo.env_remove("RUSTFLAGS").env_remove("CARGO_ENCODED_RUSTFLAGS").env_remove("CARGO_BUILD_TARGET");
     cargo.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1").env("CARGO_TARGET_DIR", &target);

@@ -40,7 +40,10 @@ impl Film {
         for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
             image.push(name, floats(self.plane(|t, i| t.mean(i)[c])));
             for (g, group) in self.layout.groups.iter().enumerate() {
-                image.push(format!("group.{}.{name}", layer_name(group)), floats(self.plane(|t, i| t.plane_mean(i, g)[c])));
+                image.push(
+                    format!("group.{}.{name}", layer_name(group)),
+                    floats(self.plane(|t, i| t.plane_mean(i, g)[c])),
+                );
             }
         }
         for (name, channels, _) in AOVS.iter().filter(|a| self.layout.aovs.has(a.0)) {
@@ -54,7 +57,8 @@ impl Film {
     /// Channel `c` of an AOV.
     pub fn aov_channel(&self, name: &str, c: usize) -> ChannelData {
         let value = |k: usize| self.plane(move |t, i| t.aovs.as_ref().map_or(0.0, |a| a.mean(i, k)));
-        let id = |pick: fn(&super::aov::Ids) -> u32| self.plane(move |t, i| t.aovs.as_ref().map_or(0, |a| pick(&a.ids[i])));
+        let id =
+            |pick: fn(&super::aov::Ids) -> u32| self.plane(move |t, i| t.aovs.as_ref().map_or(0, |a| pick(&a.ids[i])));
         match name {
             "depth" => ChannelData::F32(value(0)),
             "normals" => ChannelData::F32(value(1 + c)),

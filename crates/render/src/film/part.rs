@@ -51,7 +51,10 @@ pub fn write_part(film: &Film, image: &mut Image) {
     image.push("kirkas.count.taken", ChannelData::U32(film.plane(|t, i| t.counts[i].taken)));
     image.push("kirkas.count.invalid", ChannelData::U32(film.plane(|t, i| t.counts[i].invalid)));
     let text = |s: String| Attribute::Text(s);
-    image.attributes.insert("kirkas.groups".into(), text(film.layout.groups.iter().map(|g| escaped(g)).collect::<Vec<_>>().join("\n")));
+    image.attributes.insert(
+        "kirkas.groups".into(),
+        text(film.layout.groups.iter().map(|g| escaped(g)).collect::<Vec<_>>().join("\n")),
+    );
     image.attributes.insert("kirkas.aovs".into(), Attribute::Number(f64::from(film.layout.aovs.0)));
 }
 
@@ -88,7 +91,11 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
         _ => return Err(missing("kirkas.aovs")),
     };
     let (d, w) = (image.data, image.display);
-    if d.x < 0 || d.y < 0 || d.x as i64 + i64::from(d.width) > i64::from(w.width) || d.y as i64 + i64::from(d.height) > i64::from(w.height) {
+    if d.x < 0
+        || d.y < 0
+        || d.x as i64 + i64::from(d.width) > i64::from(w.width)
+        || d.y as i64 + i64::from(d.height) > i64::from(w.height)
+    {
         return Err(PartError::Different("its data window lies outside the image".into()));
     }
     let (x0, y0) = (d.x as u32, d.y as u32);

@@ -132,4 +132,3 @@ pub trait Integrator: Sync {
     /// `hit` is `None` where the ray left the scene.
     fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput);
 }
-

@@ -40,18 +40,28 @@ pub const SPEC: TypeSpec = TypeSpec {
     name: "whitted",
     doc: "Recursive ray tracing with distributed rays.",
     params: &[
-        ParamSpec::integer("max_depth", 8, (0.0, 1000.0), "Bounces; 0 sends no reflected or refracted ray.").unit("bounces"),
-        ParamSpec::number("min_contribution", 0.001, "A ray that can add less than this share is not sent.").range(UNIT),
+        ParamSpec::integer("max_depth", 8, (0.0, 1000.0), "Bounces; 0 sends no reflected or refracted ray.")
+            .unit("bounces"),
+        ParamSpec::number("min_contribution", 0.001, "A ray that can add less than this share is not sent.")
+            .range(UNIT),
         ParamSpec::choice(
             "shadows",
             &["opaque", "transparent", "none"],
             "`opaque`: any surface blocks; `transparent`: clear ones tint, without bending; `none`: no shadow rays.",
         ),
-        ParamSpec::bool("shade_back", true, "Shade surfaces seen from behind as well; without it they are black, as in the course."),
+        ParamSpec::bool(
+            "shade_back",
+            true,
+            "Shade surfaces seen from behind as well; without it they are black, as in the course.",
+        ),
         ParamSpec::integer("glossy_samples", 4, (1.0, 65_536.0), "Rays per glossy lobe at the first bounce, 1 deeper.")
             .range((1.0, 65_536.0)),
         ParamSpec::number("ambient", 1.0, "Scales all ambient light.").range(NOT_NEGATIVE),
-        ParamSpec::bool("surface_offset", true, "Rays start clear of rounding errors; without it surfaces shade themselves (acne)."),
+        ParamSpec::bool(
+            "surface_offset",
+            true,
+            "Rays start clear of rounding errors; without it surfaces shade themselves (acne).",
+        ),
     ],
 };
 
@@ -231,7 +241,8 @@ impl Whitted {
                 };
                 // What a straight ray meets weakens it as it goes; otherwise it stays in one body all the way.
                 let is_filtered = self.shadows == Shadows::Transparent;
-                let weight = if is_filtered { weight } else { weight * scene.clearness(&media, s.distance(hit.position)) };
+                let weight =
+                    if is_filtered { weight } else { weight * scene.clearness(&media, s.distance(hit.position)) };
                 if self.shadows == Shadows::None {
                     out.contributions.push((weight, light.group));
                     continue;

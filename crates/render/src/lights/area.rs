@@ -62,8 +62,11 @@ impl AreaLight {
             error: s.position.abs() * f64::from(gamma(4)) + from.abs() * f64::from(gamma(2)),
             normal: s.normal,
         };
-        (pdf > 0.0 && pdf.is_finite())
-            .then(|| LightSample { direction, target: Some(target), light: radiance * (1.0 / pdf) as f32 })
+        (pdf > 0.0 && pdf.is_finite()).then(|| LightSample {
+            direction,
+            target: Some(target),
+            light: radiance * (1.0 / pdf) as f32,
+        })
     }
 
     /// A point in the world with its density by area, and by solid angle if the shape sampled that.
@@ -93,5 +96,9 @@ fn is_similarity(m: &DAffine3) -> bool {
     let (x, y, z) = (m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis);
     let s = x.length_squared();
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * s;
-    near(y.length_squared(), s) && near(z.length_squared(), s) && near(x.dot(y), 0.0) && near(y.dot(z), 0.0) && near(z.dot(x), 0.0)
+    near(y.length_squared(), s)
+        && near(z.length_squared(), s)
+        && near(x.dot(y), 0.0)
+        && near(y.dot(z), 0.0)
+        && near(z.dot(x), 0.0)
 }

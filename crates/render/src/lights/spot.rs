@@ -38,7 +38,9 @@ pub const SPEC: TypeSpec = TypeSpec {
         POSITION,
         ParamSpec::vector("direction", [0.0, -1.0, 0.0], "Its axis."),
         ParamSpec::number("hotspot", 20.0, "Half angle within which it is full.").unit("degrees").range((0.0, 180.0)),
-        ParamSpec::number("falloff_angle", 30.0, "Half angle beyond which there is nothing.").unit("degrees").range((0.0, 180.0)),
+        ParamSpec::number("falloff_angle", 30.0, "Half angle beyond which there is nothing.")
+            .unit("degrees")
+            .range((0.0, 180.0)),
         INTENSITY,
         COLOR,
         UNIT,

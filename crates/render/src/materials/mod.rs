@@ -9,8 +9,12 @@ use kirkas_scene::spec::UNIT;
 use kirkas_scene::{ParamSpec, ParamType, Params};
 
 /// What every material takes.
-pub const COMMON: &[ParamSpec] =
-    &[ParamSpec::number_texture("alpha", 1.0, UNIT, "Opacity: 1 opaque, 0 not there; an image's alpha channel if it has one.")];
+pub const COMMON: &[ParamSpec] = &[ParamSpec::number_texture(
+    "alpha",
+    1.0,
+    UNIT,
+    "Opacity: 1 opaque, 0 not there; an image's alpha channel if it has one.",
+)];
 
 /// The most texture rows that a model has.
 const MOST_ROWS: usize = 8;
@@ -85,7 +89,8 @@ impl Material {
         debug_assert!(rows.len() <= MOST_ROWS);
         let slots = std::array::from_fn(|i| rows.get(i).map_or(Light::BLACK, Row::constant));
         let medium = model.medium();
-        let is_constant = params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
+        let is_constant =
+            params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,

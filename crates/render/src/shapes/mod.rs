@@ -61,7 +61,11 @@ pub const COMMON: &[ParamSpec] = &[
     ParamSpec::new("parent", ParamType::Reference(Kind::Object), Fallback::Absent, "The group that it belongs to."),
     ParamSpec::new("transform", ParamType::Transform, Fallback::Absent, "Steps that place it in its parent."),
     ParamSpec::new("motion", ParamType::Motion, Fallback::Absent, "Key frames; they come after `transform`."),
-    ParamSpec::bool("visible", true, "False: the camera does not see it; mirrors show it, and its shadow and light stay."),
+    ParamSpec::bool(
+        "visible",
+        true,
+        "False: the camera does not see it; mirrors show it, and its shadow and light stay.",
+    ),
 ];
 
 /// What a shape is built from.

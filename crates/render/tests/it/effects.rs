@@ -46,7 +46,9 @@ fn a_moving_square_covers_each_pixel_for_its_share_of_the_time() {
     // The same within a moving group, through an instance, and by a camera that moves the other way.
     let group = format!("[objects.g]\ntype = \"group\"\n{motion}{SQUARE}parent = \"g\"\n");
     assert_row(&row("shutter = [0, 1]", &group), |x| covered(x, -1.0, 1.0));
-    let instance = format!("[objects.g]\ntype = \"group\"\ntemplate = true\n{SQUARE}parent = \"g\"\n[objects.i]\ntype = \"instance\"\nof = \"g\"\n{motion}");
+    let instance = format!(
+        "[objects.g]\ntype = \"group\"\ntemplate = true\n{SQUARE}parent = \"g\"\n[objects.i]\ntype = \"instance\"\nof = \"g\"\n{motion}"
+    );
     assert_row(&row("shutter = [0, 1]", &instance), |x| covered(x, -1.0, 1.0));
     let camera = "shutter = [0, 1]\nmotion = [{ time = 0, transform = [{ translate = [1, 0, 0] }] }, { time = 1, transform = [{ translate = [-1, 0, 0] }] }]";
     assert_row(&row(camera, SQUARE), |x| covered(x, -1.0, 1.0));
@@ -154,7 +156,11 @@ fn filters_share_an_edge_between_pixels() {
         let v = scene(filter);
         assert!((v[4] - 0.5).abs() < 0.01 || filter == "point", "{filter}: {}", v[4]);
         // The sign of a negative rim is drawn, too, so there white is white on average only.
-        assert!(v[0].abs() < 1e-9 && (v[8] - 1.0).abs() < if filter == "mitchell" { 0.01 } else { 1e-9 }, "{filter}: {}", v[8]);
+        assert!(
+            v[0].abs() < 1e-9 && (v[8] - 1.0).abs() < if filter == "mitchell" { 0.01 } else { 1e-9 },
+            "{filter}: {}",
+            v[8]
+        );
         for k in 0..9 {
             assert!((v[k] + v[8 - k] - 1.0).abs() < 0.01 || filter == "point", "{filter}");
         }

@@ -74,7 +74,14 @@ fn every_kind_of_ray_flies_and_every_lamp_shines() {
     let p = compiled(SCENE, None);
     let (film, s) = expose(&p, 0..4);
     let counts = [
-        s.camera_rays, s.reflected_rays, s.refracted_rays, s.glossy_rays, s.shadow_rays, s.hits, s.lens_samples, s.time_samples,
+        s.camera_rays,
+        s.reflected_rays,
+        s.refracted_rays,
+        s.glossy_rays,
+        s.shadow_rays,
+        s.hits,
+        s.lens_samples,
+        s.time_samples,
     ];
     assert!(counts.iter().all(|&n| n > 1000), "{s:?}");
     assert_eq!(s.camera_rays, 4 * 40 * 36);

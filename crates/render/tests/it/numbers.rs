@@ -73,7 +73,9 @@ fn a_sphere_of_glass_mirrors_4_percent_at_its_middle() {
 #[test]
 fn a_metal_mirrors_what_schlick_says() {
     let metal = |kind: &str| {
-        format!("{WHITE_ABOVE}[materials.metal]\ntype = \"mirror\"\nreflectance = 0.5\nfresnel = \"{kind}\"\n[objects.sea]\ntype = \"plane\"\nmaterial = \"metal\"\n")
+        format!(
+            "{WHITE_ABOVE}[materials.metal]\ntype = \"mirror\"\nreflectance = 0.5\nfresnel = \"{kind}\"\n[objects.sea]\ntype = \"plane\"\nmaterial = \"metal\"\n"
+        )
     };
     assert_near(at_angle(&metal("schlick"), 60.0), 0.5 + 0.5 * 0.5_f64.powi(5), 1e-5);
     assert_near(at_angle(&metal("constant"), 60.0), 0.5, 1e-6);
@@ -133,7 +135,8 @@ fn the_irradiance_below_area_lights_is_the_closed_form() {
     let sphere = "type = \"sphere\"\ncenter = [0, 2, 0]";
     // Lambert's polygon in the frame x, y, z -> x, z, -y.
     let triangle = "type = \"triangle\"\nvertices = [[1, 1, 0], [-1, 1, 1], [0, 1, -1]]";
-    let mesh = "type = \"mesh\"\nvertices = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]\nfaces = [0, 1, 2, 0, 2, 3]";
+    let mesh =
+        "type = \"mesh\"\nvertices = [[-1, 1, -1], [1, 1, -1], [1, 1, 1], [-1, 1, 1]]\nfaces = [0, 1, 2, 0, 2, 3]";
     let truths = [
         (square, 1.740_839_502_734_21),
         (corner, 0.435_209_875_683_552),
@@ -161,7 +164,9 @@ fn a_tilted_floor_gets_the_cosine() {
 fn a_lamp_shines_the_same_however_it_got_to_its_place() {
     let head = "[materials.lamp]\ntype = \"emitter\"\nsamples = 4096\n";
     let square = "type = \"rectangle\"\nedge_u = [1, 0, 0]\nedge_v = [0, 0, 1]";
-    let stretched = format!("{head}[objects.lamp]\nmaterial = \"lamp\"\n{square}\ntransform = [{{ scale = [2, 5, 2] }}, {{ translate = [0, 1, 0] }}]");
+    let stretched = format!(
+        "{head}[objects.lamp]\nmaterial = \"lamp\"\n{square}\ntransform = [{{ scale = [2, 5, 2] }}, {{ translate = [0, 1, 0] }}]"
+    );
     let instanced = format!(
         "{head}[objects.g]\ntype = \"group\"\ntemplate = true\n[objects.lamp]\nmaterial = \"lamp\"\nparent = \"g\"\n{square}
          transform = [{{ scale = [1, 1, 4] }}]\n[objects.i]\ntype = \"instance\"\nof = \"g\"\ntransform = [{{ scale = [2, 3, 0.5] }}, {{ translate = [0, 1, 0] }}]"
@@ -173,14 +178,21 @@ fn a_lamp_shines_the_same_however_it_got_to_its_place() {
         "{head}[objects.g]\ntype = \"group\"\ntemplate = true\n[objects.lamp]\ntype = \"sphere\"\nradius = 0.25\nmaterial = \"lamp\"\nparent = \"g\"
          [objects.i]\ntype = \"instance\"\nof = \"g\"\ntransform = [{{ scale = 4 }}, {{ rotate = [1, 1, 0, 50] }}, {{ translate = [0, 2, 0] }}]"
     );
-    for (lamp, truth) in [(&stretched, 1.740_839_502_734_21), (&instanced, 1.740_839_502_734_21), (&moved, 1.740_839_502_734_21), (&ball, PI * 0.25)] {
+    for (lamp, truth) in [
+        (&stretched, 1.740_839_502_734_21),
+        (&instanced, 1.740_839_502_734_21),
+        (&moved, 1.740_839_502_734_21),
+        (&ball, PI * 0.25),
+    ] {
         assert_near(irradiance(lamp), truth, 0.002);
     }
 }
 
 #[test]
 fn point_lights_fade_with_the_square_or_with_the_classics_polynomial() {
-    let lamp = |height: f64, more: &str| irradiance(&format!("[lights.l]\ntype = \"point\"\nposition = [0, {height:?}, 0]\nunit = \"W/sr\"\n{more}"));
+    let lamp = |height: f64, more: &str| {
+        irradiance(&format!("[lights.l]\ntype = \"point\"\nposition = [0, {height:?}, 0]\nunit = \"W/sr\"\n{more}"))
+    };
     assert_near(lamp(1.0, ""), 1.0, 1e-6);
     assert_near(lamp(4.0, ""), 1.0 / 16.0, 1e-6);
     assert_near(lamp(4.0, "attenuation = [0.5, 0.25, 3]"), 1.0 / 12.0, 1e-6);
@@ -192,13 +204,19 @@ fn point_lights_fade_with_the_square_or_with_the_classics_polynomial() {
 
 #[test]
 fn units_of_light_mean_what_they_say() {
-    let point = |unit: &str, intensity: f64| irradiance(&format!("[lights.l]\ntype = \"point\"\nposition = [0, 1, 0]\nunit = \"{unit}\"\nintensity = {intensity:?}"));
+    let point = |unit: &str, intensity: f64| {
+        irradiance(&format!(
+            "[lights.l]\ntype = \"point\"\nposition = [0, 1, 0]\nunit = \"{unit}\"\nintensity = {intensity:?}"
+        ))
+    };
     assert_near(point("plain", 1.0), PI, 1e-6);
     assert_near(point("W/sr", 2.0), 2.0, 1e-6);
     assert_near(point("W", 4.0 * PI), 1.0, 1e-6);
     assert_near(point("cd", 683.0), 1.0, 1e-6);
     assert_near(point("lm", 683.0 * 4.0 * PI), 1.0, 1e-6);
-    let sun = |unit: &str, intensity: f64| irradiance(&format!("[lights.l]\ntype = \"directional\"\nunit = \"{unit}\"\nintensity = {intensity:?}"));
+    let sun = |unit: &str, intensity: f64| {
+        irradiance(&format!("[lights.l]\ntype = \"directional\"\nunit = \"{unit}\"\nintensity = {intensity:?}"))
+    };
     assert_near(sun("plain", 0.5), 0.5 * PI, 1e-6);
     assert_near(sun("lux", 1366.0), 2.0, 1e-6);
     assert_near(sun("W/m2", 3.0), 3.0, 1e-6);
@@ -207,7 +225,11 @@ fn units_of_light_mean_what_they_say() {
     // Full in the hot spot, half (on average) up to the falloff cone: the power goes into that many steradians.
     let (hot, end) = (20.0_f64.to_radians().cos(), 30.0_f64.to_radians().cos());
     let solid_angle = 2.0 * PI * (1.0 - 0.5 * (hot + end));
-    let spot = |unit: &str, intensity: f64| irradiance(&format!("[lights.l]\ntype = \"spot\"\nposition = [0, 1, 0]\nunit = \"{unit}\"\nintensity = {intensity:?}"));
+    let spot = |unit: &str, intensity: f64| {
+        irradiance(&format!(
+            "[lights.l]\ntype = \"spot\"\nposition = [0, 1, 0]\nunit = \"{unit}\"\nintensity = {intensity:?}"
+        ))
+    };
     assert_near(spot("W", solid_angle), 1.0, 1e-6);
     assert_near(spot("lm", 683.0 * solid_angle), 1.0, 1e-6);
     assert_near(spot("cd", 683.0), 1.0, 1e-6);
@@ -274,7 +296,8 @@ fn a_spot_is_full_in_its_hotspot_and_ends_at_its_falloff() {
 /// The error of 4096 stratified shadow rays is far below that of as many random ones, and a pixel's own variance tells it.
 #[test]
 fn the_film_knows_its_noise() {
-    let lamp = glowing("type = \"rectangle\"\ncenter = [0, 1, 0]\nedge_u = [2, 0, 0]\nedge_v = [0, 0, 2]").replace("samples = 4096", "samples = 1");
+    let lamp = glowing("type = \"rectangle\"\ncenter = [0, 1, 0]\nedge_u = [2, 0, 0]\nedge_v = [0, 0, 2]")
+        .replace("samples = 4096", "samples = 1");
     let body = format!("{lamp}\n[sampler]\ntype = \"independent\"\nsamples = 4096\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n[objects.floor]\ntype = \"plane\"\nmaterial = \"white\"
         [film]\nwidth = 8\nheight = 8\nfilter = \"point\"\n[cameras.c]\ntype = \"perspective\"\nposition = [3, 0.4, 0.2]\nlook_at = [0, 0, 0]\nfov = 0.01\n");
     let p = prepared(&body);

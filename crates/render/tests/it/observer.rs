@@ -1,12 +1,12 @@
 //! Replay: an observer sees exactly the rays that made a pixel, and what they brought sums to what is stored.
 
 use crate::support::{expose, prepared, prepared_with};
+use kirkas_optics::Light;
 use kirkas_render::film::AovSet;
 use kirkas_render::integrators::{PathState, RayKind, ShadowRay};
 use kirkas_render::observe::{Observer, PathEnd, SampleId};
 use kirkas_render::scene::SurfaceHit;
 use kirkas_render::{Options, Prepared};
-use kirkas_optics::Light;
 use std::collections::BTreeMap;
 
 /// Writes everything down.
@@ -109,7 +109,10 @@ fn a_mirror_before_a_mirror_gives_a_chain_of_rays() {
     let chain = [(RayKind::Camera, 0), (RayKind::Reflected, 1), (RayKind::Reflected, 2), (RayKind::Reflected, 3)];
     assert_eq!(kinds, chain);
     // From the eye to the near plane, then to and fro.
-    assert_eq!(r.hits.iter().map(|h| (h.1.round(), h.2)).collect::<Vec<_>>(), [(3.0, 0), (10.0, 1), (10.0, 0), (10.0, 1)]);
+    assert_eq!(
+        r.hits.iter().map(|h| (h.1.round(), h.2)).collect::<Vec<_>>(),
+        [(3.0, 0), (10.0, 1), (10.0, 0), (10.0, 1)]
+    );
     assert_eq!(r.shadows.iter().map(|s| (s.1, s.2)).collect::<Vec<_>>(), [(0, false); 4]);
     assert_eq!(r.lights.len(), 4);
     let (first, last) = (r.lights[0][0], r.lights[3][0]);
@@ -137,7 +140,10 @@ fn paths_end_for_the_reason_that_is_told() {
 #[test]
 fn a_pane_of_glass_gives_a_tree() {
     let toml = MIRRORS
-        .replace("[materials.coat]\ntype = \"phong\"\ndiffuse = 0.5\nreflect = 0.5", "[materials.coat]\ntype = \"dielectric\"")
+        .replace(
+            "[materials.coat]\ntype = \"phong\"\ndiffuse = 0.5\nreflect = 0.5",
+            "[materials.coat]\ntype = \"dielectric\"",
+        )
         .replace("max_depth = 3", "max_depth = 2\nmin_contribution = 0");
     let slab = toml.split("[objects.near]").next().expect("a head").to_string()
         + "[objects.slab]\ntype = \"box\"\nmin = [-9, -9, -1]\nmax = [9, 9, 0]\nmaterial = \"coat\"\n";

@@ -161,7 +161,10 @@ const BODIES: [(&str, &str); 8] = [
     ("cylinder", "type = \"cylinder\"\nfrom = [@0, @-0.7, @0]\nto = [@0, @0.7, @0]\nradius = @0.6"),
     ("cone", "type = \"cone\"\nfrom = [@0, @-0.5, @0]\nto = [@0, @0.8, @0]\nradius = @0.7"),
     ("frustum", "type = \"cone\"\nfrom = [@0, @-0.5, @0]\nto = [@0, @0.6, @0]\nradius = @0.7\ntop_radius = @0.3"),
-    ("mesh", "type = \"mesh\"\nnormals = \"flat\"\nvertices = [[@0.8, @0, @0], [@-0.8, @0, @0], [@0, @0.9, @0], [@0, @-0.9, @0], [@0, @0, @0.7], [@0, @0, @-0.7]]\nfaces = [0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5]"),
+    (
+        "mesh",
+        "type = \"mesh\"\nnormals = \"flat\"\nvertices = [[@0.8, @0, @0], [@-0.8, @0, @0], [@0, @0.9, @0], [@0, @-0.9, @0], [@0, @0, @0.7], [@0, @0, @-0.7]]\nfaces = [0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5]",
+    ),
     ("disk", "type = \"disk\"\nradius = @0.9\nnormal = [0.3, 0.5, 0.8]"),
     ("rectangle", "type = \"rectangle\"\nedge_u = [@1, @0.2, @0]\nedge_v = [@0, @1, @-0.4]"),
 ];
@@ -178,10 +181,12 @@ const WAYS: [&str; 3] = [
 const WHITE: &str = "[materials.white]\ntype = \"lambert\"\nreflectance = 1\n";
 
 fn normals(film: &Film) -> Vec<(Rgb, f32)> {
-    film.pixels().map(|(_, _, t, i)| {
-        let a = t.aovs.as_ref().expect("kept");
-        (std::array::from_fn(|c| f64::from(a.mean(i, 1 + c))), a.hits[i] as f32)
-    }).collect()
+    film.pixels()
+        .map(|(_, _, t, i)| {
+            let a = t.aovs.as_ref().expect("kept");
+            (std::array::from_fn(|c| f64::from(a.mean(i, 1 + c))), a.hits[i] as f32)
+        })
+        .collect()
 }
 
 /// On a convex body nothing lies between a lit point and the sun: every pixel shows the cosine.
@@ -193,7 +198,8 @@ fn grazing_light_leaves_no_speckles() {
             for (way, placed) in WAYS.iter().enumerate() {
                 for lamp in [
                     "[lights.l]\ntype = \"directional\"\ndirection = [-0.8, 0, -0.6]\n".to_string(),
-                    "[lights.l]\ntype = \"point\"\nposition = [@80000, @0, @60000]\nintensity = @@10000000000\n".to_string(),
+                    "[lights.l]\ntype = \"point\"\nposition = [@80000, @0, @60000]\nintensity = @@10000000000\n"
+                        .to_string(),
                 ] {
                     let toml = scaled(
                         &format!(

@@ -68,7 +68,9 @@ fn under(shadows: &str, lamp: &str, between: &str) -> Rgb {
 }
 
 fn pane(name: &str, z: f64, material: &str) -> String {
-    format!("[objects.{name}]\ntype = \"rectangle\"\ncenter = [0, 0, {z:?}]\nedge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\nmaterial = \"{material}\"\n")
+    format!(
+        "[objects.{name}]\ntype = \"rectangle\"\ncenter = [0, 0, {z:?}]\nedge_u = [1, 0, 0]\nedge_v = [0, 1, 0]\nmaterial = \"{material}\"\n"
+    )
 }
 
 #[test]
@@ -107,10 +109,17 @@ fn shadows_are_none_opaque_or_transparent() {
 #[test]
 fn light_that_is_there_for_no_surface_is_not_asked_for() {
     let count = |body: &str| {
-        let p = prepared(&one_pixel(&format!("[lights.l]\ntype = \"point\"\nposition = [0, 0, 9]\n{body}"), UP_Z, ORIGIN, 1));
+        let p = prepared(&one_pixel(
+            &format!("[lights.l]\ntype = \"point\"\nposition = [0, 0, 9]\n{body}"),
+            UP_Z,
+            ORIGIN,
+            1,
+        ));
         expose(&p, 0..1).1
     };
-    let floor = |material: &str| format!("[materials.m]\n{material}\n[objects.o]\ntype = \"disk\"\nnormal = [0, 0, 1]\nmaterial = \"m\"\n");
+    let floor = |material: &str| {
+        format!("[materials.m]\n{material}\n[objects.o]\ntype = \"disk\"\nnormal = [0, 0, 1]\nmaterial = \"m\"\n")
+    };
     assert_eq!(count(&floor("type = \"lambert\"")).shadow_rays, 1);
     assert_eq!(count(&(floor("type = \"lambert\"") + "[integrator]\nshadows = \"none\"\n")).shadow_rays, 0);
     assert_eq!(count(&floor("type = \"lambert\"\nreflectance = 0")).shadow_rays, 0);
@@ -128,7 +137,8 @@ fn backs_are_black_without_shade_back() {
                  color = 0.25\n[materials.m]\n{material}\n[objects.o]\ntype = \"disk\"\nnormal = {normal}\nmaterial = \"m\"\n")
     };
     let white = "type = \"phong\"\ndiffuse = 1\nreflect = 1";
-    let see = |integrator: &str, normal: &str, material: &str| grey(&body(integrator, normal, material), UP_Z, ORIGIN, 1);
+    let see =
+        |integrator: &str, normal: &str, material: &str| grey(&body(integrator, normal, material), UP_Z, ORIGIN, 1);
     let (front, back) = ("[0, 0, 1]", "[0, 0, -1]");
     for normal in [front, back] {
         assert_near(see("", normal, white), 1.75, 1e-6);
@@ -336,7 +346,9 @@ fn a_camera_inside_bodies_keeps_its_exposure() {
 #[test]
 fn beyond_the_critical_angle_all_is_mirrored() {
     let body = |ior: f64| {
-        format!("[integrator]\nmax_depth = 1\n[background]\ncolor = 0.5\n[materials.m]\ntype = \"dielectric\"\nior = {ior:?}\n[objects.sea]\ntype = \"plane\"\nmaterial = \"m\"\n")
+        format!(
+            "[integrator]\nmax_depth = 1\n[background]\ncolor = 0.5\n[materials.m]\ntype = \"dielectric\"\nior = {ior:?}\n[objects.sea]\ntype = \"plane\"\nmaterial = \"m\"\n"
+        )
     };
     let (s, c) = 60.0_f64.to_radians().sin_cos();
     let statistics = |ior: f64| {
@@ -390,7 +402,9 @@ fn veil(name: &str, z: f64, alpha: f64, radiance: f64) -> String {
 #[test]
 fn a_veil_covers_as_often_as_its_alpha_says() {
     const N: u32 = 16384;
-    let close = |value: f64, truth: f64| assert!((value - truth).abs() < 4.0 * (truth * (1.0 - truth) / f64::from(N)).sqrt(), "{value} {truth}");
+    let close = |value: f64, truth: f64| {
+        assert!((value - truth).abs() < 4.0 * (truth * (1.0 - truth) / f64::from(N)).sqrt(), "{value} {truth}")
+    };
     for alpha in [0.1, 0.5, 0.75] {
         close(grey(&veil("a", 0.0, alpha, 1.0), UP_Z, ORIGIN, N), alpha);
     }
