@@ -1,5 +1,6 @@
 //! Everything that the renderer promises.
 
+mod bodies;
 mod cameras;
 mod effects;
 mod everything;
