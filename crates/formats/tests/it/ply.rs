@@ -239,34 +239,3 @@ fn the_stanford_bunny_is_read_whole() {
     let mesh = read(&std::fs::read(path).unwrap(), "bun_zipper.ply").unwrap_or_else(|f| panic!("{}", failure(&f)));
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (35947, 69451));
 }
-
-/// A grid of a million triangles.
-fn grid() -> MeshData {
-    let (w, h) = (1000_u32, 500_u32);
-    let mut m = MeshData::default();
-    for y in 0..=h {
-        m.positions.extend((0..=w).map(|x| Vec3::new(x as f32, y as f32, ((x * y) % 7) as f32)));
-    }
-    for y in 0..h {
-        for x in 0..w {
-            let a = y * (w + 1) + x;
-            let (b, c, d) = (a + 1, a + w + 1, a + w + 2);
-            m.triangles.extend([[a, b, d], [a, d, c]]);
-        }
-    }
-    m
-}
-
-/// Prints the time; run it with `--ignored --nocapture` on a release build.
-#[test]
-#[ignore = "a measurement, not a test"]
-fn time_of_a_million_triangles() {
-    let mesh = grid();
-    let bytes = write_binary(&mesh);
-    for _ in 0..5 {
-        let start = std::time::Instant::now();
-        let found = read(&bytes, "grid.ply").unwrap();
-        eprintln!("{} triangles, {} bytes: {:?}", found.triangles.len(), bytes.len(), start.elapsed());
-        assert_eq!(found, mesh);
-    }
-}

@@ -31,6 +31,9 @@
 //! outside n^2 as bright. `fresnel = "constant"` does not scale, does not depend on the angle (but still reflects totally, when
 //! only the `reflectance` part remains), and with its defaults gives back twice the light it gets: choose k_s + k_t <= 1.
 //!
+//! Let bodies overlap where they meet (`priority` says who fills the overlap) or leave a gap: boundaries that coincide exactly
+//! are met as one, so that touching bodies of different index look too dark or too bright.
+//!
 //! ## References
 //!
 //! M. Born & E. Wolf, "Principles of Optics", 7th ed., section 1.5. C. Schlick 1994, equation 15. E. Veach 1997, section 5.2
