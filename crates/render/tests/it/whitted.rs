@@ -1,7 +1,8 @@
 //! The recursive tracer's rules, each in a scene whose answer can be computed by hand.
 
-use crate::support::{Rgb, assert_near, expose, grey, one_pixel, pixel, prepared, render, seen};
-use kirkas_render::Statistics;
+use crate::support::{Rgb, assert_near, expose, grey, one_pixel, pixel, prepared, prepared_with, render, seen};
+use kirkas_render::render::Undisturbed;
+use kirkas_render::{Film, Options, Statistics};
 use kirkas_render::integrators::MediumStack;
 
 const UP_Z: Rgb = [0.0, 0.0, 5.0];
@@ -98,7 +99,8 @@ fn shadows_are_none_opaque_or_transparent() {
         near(under("transparent", body), [0.25, 0.0625, 1.0]);
         near(under("transparent", &(body.to_string() + &wall)), [0.0; 3]);
     }
-    // What stands behind the lamp is no matter.
+    // What stands behind the lamp is no matter, nor when the ray was tinted on its way.
+    near(under("transparent", bulb, &(pane("a", 2.0, "red") + &pane("behind", 4.5, "grey"))), [0.5, 0.25, 1.0]);
     for shadows in ["opaque", "transparent"] {
         near(under(shadows, bulb, &pane("behind", 4.5, "grey")), [1.0; 3]);
         near(under(shadows, bulb, &pane("behind", 4.5, "red")), [1.0; 3]);
@@ -328,6 +330,17 @@ fn ice_in_a_drink_in_a_glass() {
     assert_near(through_slabs(&inside, 9.0), expected(&[1.0, 1.5, 1.2, 1.5, 1.0], 0.2 + 0.4), 1e-5);
 }
 
+/// Boundaries that a body of higher rank covers are passed, but not without end.
+#[test]
+fn a_path_through_too_many_covered_boundaries_is_given_up() {
+    let hidden = |n: usize| -> Vec<_> {
+        let slab = |i: usize| (2.0 - 0.01 * i as f64 - 0.005, 2.0 - 0.01 * i as f64, 1.3, 0, 0.0);
+        std::iter::once((-3.0, 3.0, 1.5, 1, 0.0)).chain((0..n).map(slab)).collect()
+    };
+    assert_near(through_slabs(&hidden(127), 9.0), 0.96 * 0.96, 1e-5);
+    assert_eq!(through_slabs(&hidden(129), 9.0), 0.0);
+}
+
 /// A camera inside bodies: what it sees is not n^2 times brighter, and its own path absorbs.
 #[test]
 fn a_camera_inside_bodies_keeps_its_exposure() {
@@ -437,4 +450,75 @@ fn what_is_not_visible_is_hidden_from_the_camera_only() {
     let mirror = "[materials.m]\ntype = \"mirror\"\nreflectance = 0.5\n[materials.lamp]\ntype = \"emitter\"\n[objects.floor]\ntype = \"plane\"
         normal = [0, 0, 1]\nmaterial = \"m\"\n[objects.o]\ntype = \"sphere\"\ncenter = [0, 0, 2]\nmaterial = \"lamp\"\nvisible = false\n";
     assert_near(grey(mirror, above, ORIGIN, 1), 0.5, 1e-6);
+}
+
+// ---- shading normals, skies, nonsense
+
+/// A flat face in the plane z = 0 whose written normal leans by 53 degrees towards +x.
+fn leaning(material: &str, rest: &str) -> f64 {
+    let obj = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn 0.8 0 0.6\nf 1//1 2//1 3//1\n";
+    let body = format!("{rest}\n[materials.m]\n{material}\n[objects.o]\ntype = \"mesh\"\nfile = \"face.obj\"\nmaterial = \"m\"\n");
+    let toml = one_pixel(&body, UP_Z, ORIGIN, 1);
+    let p = prepared_with(&toml, &[("face.obj", obj.as_bytes())], &Options::default());
+    pixel(&expose(&p, 0..1).0, 0, 0)[1]
+}
+
+#[test]
+fn a_leaning_normal_shades_but_lets_no_light_through() {
+    let lit = |shadows: &str, x: f64, z: f64| {
+        let sun = format!("[integrator]\nshadows = \"{shadows}\"\n[lights.l]\ntype = \"directional\"\ndirection = [{:?}, 0, {:?}]\n", -x, -z);
+        leaning("type = \"lambert\"\nreflectance = 1", &sun)
+    };
+    for shadows in ["opaque", "none"] {
+        assert_near(lit(shadows, 0.8, 0.6), 1.0, 1e-6);
+        assert_near(lit(shadows, 0.0, 1.0), 0.6, 1e-6);
+        // Above the leaning face but below the true one; and the other way round.
+        assert_eq!(lit(shadows, 0.96, -0.28), 0.0);
+        assert_eq!(lit(shadows, -0.96, 0.28), 0.0);
+    }
+}
+
+#[test]
+fn a_ray_that_a_leaning_normal_sends_into_the_surface_is_dropped() {
+    let sky = "[background]\ncolor = 1\n";
+    assert_eq!(leaning("type = \"mirror\"", sky), 0.0);
+    assert!(leaning("type = \"dielectric\"\nfresnel = \"constant\"\nreflectance = 0", sky) > 0.99);
+}
+
+#[test]
+fn a_gradient_runs_between_its_stops() {
+    let sky = |y: f64| {
+        let body = "[background]\ntype = \"gradient\"\nup = [0, 2, 0]\nstops = [[-0.5, 0.2], [0.5, 0.6], [0.9, 0.1]]\n";
+        grey(body, ORIGIN, [(1.0 - y * y).sqrt(), y, 0.0], 1)
+    };
+    for (y, truth) in [(-0.9, 0.2), (-0.5, 0.2), (-0.25, 0.3), (0.0, 0.4), (0.25, 0.5), (0.7, 0.35), (0.95, 0.1)] {
+        assert_near(sky(y), truth, 1e-5);
+    }
+}
+
+/// Half of the samples see something absurdly bright: they are counted, located and left out.
+#[test]
+fn absurd_light_is_left_out_and_told() {
+    for (radiance, intensity) in [(1.0, 1e30), (1.0, 1e300)] {
+        let absurd = veil("sun", 0.0, 0.5, radiance) + "[background]\ncolor = 0.25\n";
+        let absurd = absurd.replace("type = \"emitter\"", &format!("type = \"emitter\"\nintensity = {intensity:?}"));
+        let p = prepared(&one_pixel(&absurd, UP_Z, ORIGIN, 64));
+        let take = |samples| {
+            let mut film = Film::new(p.film.clone());
+            p.renderer(8).render(&mut film, samples, &Undisturbed);
+            film
+        };
+        let mut film = take(0..64);
+        let tile = &film.tiles[0];
+        assert!((16..48).contains(&tile.counts[0].invalid), "{:?}", tile.counts);
+        assert_eq!((film.invalid_samples(), tile.counts[0].taken), (u64::from(tile.counts[0].invalid), 64));
+        assert_eq!(tile.invalid.len(), 16, "as many places are kept");
+        assert!(tile.invalid.iter().all(|id| (id.x, id.y) == (0, 0) && id.sample < 64));
+        assert_eq!(pixel(&film, 0, 0), [0.25; 3]);
+        let more = take(64..128);
+        let sum = film.invalid_samples() + more.invalid_samples();
+        film.merge(&more).expect("they fit");
+        assert_eq!((film.invalid_samples(), film.tiles[0].counts[0].taken), (sum, 128));
+        assert_eq!(film.tiles[0].mean(0), [0.25; 3]);
+    }
 }
