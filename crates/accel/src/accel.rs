@@ -1,12 +1,12 @@
 //! The door: build a structure over a scene, then ask it for hits.
 
-use crate::bvh2::Tree;
 use crate::hit::{Counters, Hit, HitFilter, NO_INSTANCE};
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::{Geometry, SceneGeometry};
 use crate::search::{Level, Search};
-use crate::{AccelError, AccelKind, Executor, brute_force, check, primitive};
+use crate::structure::{Measures, Structure};
+use crate::{AccelError, AccelKind, Executor, check, primitive};
 use kirkas_geometry::{Bounds3, Ray};
 
 /// A structure over a scene. Immutable, and shared by as many threads as the caller likes.
@@ -15,9 +15,9 @@ pub struct Accel {
     scene: SceneGeometry,
     instances: Vec<PlacedInstance>,
     bounds: Bounds3,
-    /// The world's tree and one for each aggregate; empty for brute force.
-    world: Tree,
-    aggregates: Vec<Tree>,
+    /// Over the world, and over each aggregate.
+    world: Structure,
+    aggregates: Vec<Structure>,
 }
 
 /// What a structure looks like.
@@ -41,19 +41,12 @@ impl Accel {
     /// Build. The result does not depend on the executor.
     pub fn build(kind: AccelKind, scene: SceneGeometry, executor: &dyn Executor) -> Result<Accel, AccelError> {
         check::scene(&scene)?;
-        let mut aggregates: Vec<Tree> = scene.aggregates.iter().map(|_| Tree::default()).collect();
-        if kind == AccelKind::Bvh2 {
-            for (tree, geometries) in aggregates.iter_mut().zip(&scene.aggregates) {
-                *tree = Tree::build(geometries, &[], executor);
-            }
-        }
+        let build = |a: &Vec<Geometry>| Structure::build(kind, a, &[], executor);
+        let aggregates: Vec<Structure> = scene.aggregates.iter().map(build).collect();
         let object_bounds: Vec<Bounds3> = scene.aggregates.iter().map(|a| whole_bounds(a)).collect();
         let place = |i: &crate::Instance| PlacedInstance::new(i, &object_bounds[i.aggregate], scene.shutter);
         let instances: Vec<PlacedInstance> = scene.instances.iter().map(place).collect();
-        let world = match kind {
-            AccelKind::BruteForce => Tree::default(),
-            AccelKind::Bvh2 => Tree::build(&scene.world, &instances, executor),
-        };
+        let world = Structure::build(kind, &scene.world, &instances, executor);
         let placed = instances.iter().map(|i| i.bounds).filter(Bounds3::is_finite);
         let bounds = placed.fold(finite_bounds(&scene.world), Bounds3::union);
         Ok(Accel { kind, scene, instances, bounds, world, aggregates })
@@ -131,23 +124,20 @@ impl Accel {
     /// Size and quality.
     pub fn statistics(&self) -> Statistics {
         let count = |g: &[Geometry]| g.iter().map(|g| g.shape.len()).sum::<usize>();
-        let trees = || core::iter::once(&self.world).chain(&self.aggregates);
+        let all: Vec<Measures> = self.aggregates.iter().chain([&self.world]).map(Structure::measures).collect();
         Statistics {
-            nodes: trees().map(Tree::node_count).sum(),
+            nodes: all.iter().map(|m| m.nodes).sum(),
             primitives: count(&self.scene.world) + self.scene.aggregates.iter().map(|a| count(a)).sum::<usize>(),
             instances: self.instances.len(),
-            bytes: trees().map(Tree::bytes).sum::<usize>() + self.instances.len() * size_of::<PlacedInstance>(),
-            sah_cost: self.world.sah_cost(),
-            depth: trees().map(Tree::depth).max().unwrap_or(0),
+            bytes: all.iter().map(|m| m.bytes).sum::<usize>() + self.instances.len() * size_of::<PlacedInstance>(),
+            sah_cost: all.last().map_or(0.0, |world| world.sah_cost),
+            depth: all.iter().map(|m| m.depth).max().unwrap_or(0),
         }
     }
 
     /// Check every invariant of the trees: each primitive in exactly one leaf, each box around all below it, depth within
     /// the stack. Says what is wrong first.
     pub fn validate(&self) -> Result<(), String> {
-        if self.kind == AccelKind::BruteForce {
-            return Ok(());
-        }
         self.world.validate(&self.scene.world, &self.instances).map_err(|e| format!("world: {e}"))?;
         for (i, (tree, geometries)) in self.aggregates.iter().zip(&self.scene.aggregates).enumerate() {
             tree.validate(geometries, &[]).map_err(|e| format!("aggregate {i}: {e}"))?;
@@ -157,18 +147,9 @@ impl Accel {
 
     fn search<const ANY: bool>(&self, ray: &Ray, search: &mut Search<ANY>) {
         let Some(ray) = PreparedRay::new(ray) else { return };
-        let level = Level { geometries: &self.scene.world, instance: NO_INSTANCE };
-        match self.kind {
-            AccelKind::BruteForce => {
-                brute_force::search(level, &ray, search);
-                for index in 0..self.instances.len() as u32 {
-                    self.search_instance(index, &ray, search);
-                }
-            }
-            AccelKind::Bvh2 => {
-                self.world.search(level, &ray, search, |search, index| self.search_instance(index, &ray, search));
-            }
-        }
+        let instances = self.instances.len() as u32;
+        let level = Level { geometries: &self.scene.world, instances, instance: NO_INSTANCE };
+        self.world.search(level, &ray, search, &mut |search, index| self.search_instance(index, &ray, search));
     }
 
     fn search_instance<const ANY: bool>(&self, index: u32, ray: &PreparedRay, search: &mut Search<ANY>) {
@@ -177,11 +158,9 @@ impl Accel {
         }
         let placed = &self.instances[index as usize];
         let Some(ray) = placed.enter(ray) else { return };
-        let level = Level { geometries: &self.scene.aggregates[placed.aggregate], instance: index };
-        match self.kind {
-            AccelKind::BruteForce => brute_force::search(level, &ray, search),
-            AccelKind::Bvh2 => self.aggregates[placed.aggregate].search(level, &ray, search, |_, _| {}),
-        }
+        let geometries = &self.scene.aggregates[placed.aggregate];
+        let level = Level { geometries, instances: 0, instance: index };
+        self.aggregates[placed.aggregate].search(level, &ray, search, &mut |_, _| {});
     }
 }
 

@@ -4,8 +4,13 @@ use crate::prepared_ray::PreparedRay;
 use crate::primitive;
 use crate::search::{Level, Search};
 
-/// Look at each primitive of a level. Instances are the caller's.
-pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &mut Search<ANY>) {
+/// Look at each primitive of a level and enter each of its instances.
+pub(crate) fn search<const ANY: bool>(
+    level: Level,
+    ray: &PreparedRay,
+    search: &mut Search<ANY>,
+    enter: &mut dyn FnMut(&mut Search<ANY>, u32),
+) {
     for (g, geometry) in level.geometries.iter().enumerate() {
         for p in 0..geometry.shape.len() as u32 {
             if search.is_done() {
@@ -14,5 +19,8 @@ pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &
             search.counters.primitives_tested += 1;
             primitive::intersect(&geometry.shape, p, ray, |t, u, v| search.offer(level, g as u32, p, (t, u, v)));
         }
+    }
+    for instance in 0..level.instances {
+        enter(search, instance);
     }
 }

@@ -26,6 +26,7 @@
 
 mod accel;
 mod brute_force;
+mod build;
 mod bvh2;
 mod check;
 mod error;
@@ -35,9 +36,11 @@ mod instance;
 mod kind;
 mod prepared_ray;
 mod primitive;
+mod record;
 mod scene_geometry;
 mod search;
 pub mod sphere;
+mod structure;
 pub mod triangle;
 
 pub use accel::{Accel, Statistics};

@@ -8,7 +8,9 @@ use kirkas_geometry::Ray;
 #[derive(Clone, Copy)]
 pub(crate) struct Level<'a> {
     pub geometries: &'a [Geometry],
-    /// Index of the instance, or `NO_INSTANCE`.
+    /// How many instances stand among them.
+    pub instances: u32,
+    /// Index of the instance they stand in, or `NO_INSTANCE`.
     pub instance: u32,
 }
 

@@ -1,13 +1,10 @@
 //! Takes a ray through the tree, the nearer child first.
 
-use super::node::{Child, NodeRay, Record, RecordKind};
-use super::{MAX_DEPTH, Tree};
+use super::Tree;
+use super::node::NodeRay;
+use crate::build::binary::{Child, MAX_DEPTH};
 use crate::prepared_ray::PreparedRay;
-use crate::primitive;
-use crate::scene_geometry::{Shape, Sphere};
 use crate::search::{Level, Search};
-use crate::{sphere, triangle};
-use kirkas_geometry::Vec3;
 
 impl Tree {
     /// Search all that the tree holds; `enter` searches an instance.
@@ -16,10 +13,10 @@ impl Tree {
         level: Level,
         ray: &PreparedRay,
         search: &mut Search<ANY>,
-        mut enter: impl FnMut(&mut Search<ANY>, u32),
+        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
     ) {
         for record in &self.unbounded {
-            test(record, level, ray, search, &mut enter);
+            record.test(level, ray, search, enter);
         }
         let Some(mut current) = self.root else { return };
         let node_ray = NodeRay::new(ray);
@@ -30,7 +27,7 @@ impl Tree {
             if current.is_leaf() {
                 let (first, count) = current.run();
                 for record in &self.records[first..first + count] {
-                    test(record, level, ray, search, &mut enter);
+                    record.test(level, ray, search, enter);
                 }
             } else {
                 nodes_visited += 1;
@@ -95,43 +92,5 @@ impl Stack {
         self.len = self.len.checked_sub(1)?;
         let entry = self.entries[self.len];
         Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
-    }
-}
-
-#[inline(always)]
-fn test<const ANY: bool>(
-    record: &Record,
-    level: Level,
-    ray: &PreparedRay,
-    search: &mut Search<ANY>,
-    enter: &mut impl FnMut(&mut Search<ANY>, u32),
-) {
-    let (geometry, index) = (record.geometry, record.primitive);
-    match record.kind {
-        RecordKind::Triangle => {
-            search.counters.primitives_tested += 1;
-            if let Some(crossing) = triangle::intersect(&record.corners, ray) {
-                search.offer(level, geometry, index, crossing);
-            }
-        }
-        RecordKind::Sphere => {
-            search.counters.primitives_tested += 1;
-            sphere::intersect(&record.sphere(), ray, |t| search.offer(level, geometry, index, (t, 0.0, 0.0)));
-        }
-        RecordKind::User => {
-            search.counters.primitives_tested += 1;
-            if let Shape::User(user) = &level.geometries[geometry as usize].shape {
-                let mut offer = |t, u, v| search.offer(level, geometry, index, (t, u, v));
-                primitive::intersect_user(&**user, index, ray, &mut offer);
-            }
-        }
-        RecordKind::Instance => enter(search, index),
-    }
-}
-
-impl Record {
-    #[inline]
-    pub fn sphere(&self) -> Sphere {
-        Sphere { center: Vec3::from_array(self.corners[0]), radius: self.corners[1][0] }
     }
 }

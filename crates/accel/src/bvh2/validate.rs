@@ -1,9 +1,11 @@
 //! The tree's invariants, callable, and its measures.
 
-use super::node::Child;
-use super::{IS_INSTANCE, MAX_DEPTH, Tree, all_references, binned_sah};
+use super::Tree;
+use crate::build::binary::{Child, MAX_DEPTH};
+use crate::build::binned_sah;
 use crate::instance::PlacedInstance;
 use crate::primitive;
+use crate::record::{IS_INSTANCE, all_references};
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 

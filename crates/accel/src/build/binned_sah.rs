@@ -4,10 +4,9 @@
 //! One array of boxes is partitioned in place. Subtrees may be built at once: which, and with what outcome, depends on
 //! their size only.
 
-use super::MAX_DEPTH;
-use super::node::{Child, MAX_LEAF, Node};
+use super::binary::{BinaryTree, Child, MAX_DEPTH, MAX_LEAF, Node};
+use super::reference::{Box4, Lanes, Reference};
 use crate::Executor;
-use kirkas_geometry::{Bounds3, Vec3};
 
 /// Cost of visiting a node; testing a primitive costs 1.
 pub(crate) const NODE_COST: f32 = 2.0;
@@ -15,83 +14,14 @@ const BINS: usize = 16;
 /// Subtrees larger than this are handed to the executor in two halves.
 const FORK_ABOVE: usize = 1 << 15;
 
-/// A box in the making. The fourth lane carries the ids of a [`Reference`] and nothing otherwise.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(16))]
-pub(crate) struct Lanes([f32; 4]);
-
-impl Lanes {
-    #[inline(always)]
-    fn min(self, o: Lanes) -> Lanes {
-        Lanes(core::array::from_fn(|i| if self.0[i] < o.0[i] { self.0[i] } else { o.0[i] }))
-    }
-    #[inline(always)]
-    fn max(self, o: Lanes) -> Lanes {
-        Lanes(core::array::from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Box4 {
-    lo: Lanes,
-    hi: Lanes,
-}
-
-impl Box4 {
-    const EMPTY: Box4 = Box4 { lo: Lanes([f32::INFINITY; 4]), hi: Lanes([f32::NEG_INFINITY; 4]) };
-
-    #[inline(always)]
-    fn union(self, o: Box4) -> Box4 {
-        Box4 { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
-    }
-
-    /// Half the surface area; sizes are capped so that the product stays finite.
-    #[inline(always)]
-    fn half_area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|k| (self.hi.0[k] - self.lo.0[k]).min(1e18));
-        x * y + (y + x) * z
-    }
-
-    fn to_bounds(self) -> Bounds3 {
-        let v = |l: Lanes| Vec3::new(l.0[0], l.0[1], l.0[2]);
-        Bounds3 { min: v(self.lo), max: v(self.hi) }
-    }
-}
-
-/// A primitive's box and ids.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reference(Box4);
-
-/// Ids ride in the fourth lanes as the bits of normal numbers: arithmetic on subnormal ones is hundreds of cycles slow.
-const AS_NUMBER: u32 = 0x4000_0000;
-/// Ids are at most this.
-pub(crate) const MAX_ID: u32 = (1 << 28) - 1;
-
-impl Reference {
-    pub fn new(b: &Bounds3, geometry: u32, primitive: u32) -> Self {
-        debug_assert!(geometry <= MAX_ID && primitive <= MAX_ID);
-        let lanes = |v: Vec3, id: u32| Lanes([v.x, v.y, v.z, f32::from_bits(AS_NUMBER | id)]);
-        Reference(Box4 { lo: lanes(b.min, geometry), hi: lanes(b.max, primitive) })
-    }
-
-    /// Geometry and primitive.
-    pub fn ids(&self) -> (u32, u32) {
-        (self.0.lo.0[3].to_bits() & MAX_ID, self.0.hi.0[3].to_bits() & MAX_ID)
-    }
-
-    pub fn bounds(&self) -> Bounds3 {
-        self.0.to_bounds()
-    }
-
-    /// The center, without overflow.
-    #[inline(always)]
-    fn center(&self) -> Lanes {
-        Lanes(core::array::from_fn(|i| self.0.lo.0[i] * 0.5 + self.0.hi.0[i] * 0.5))
-    }
+/// The tree over `references`.
+pub(crate) fn build(mut references: Vec<Reference>, executor: &dyn Executor) -> BinaryTree {
+    let (nodes, root) = nodes(&mut references, executor);
+    BinaryTree { nodes, root, references }
 }
 
 /// The nodes over `references`, which are put into the order of the leaves, and the root.
-pub(crate) fn build(references: &mut [Reference], executor: &dyn Executor) -> (Vec<Node>, Option<Child>) {
+fn nodes(references: &mut [Reference], executor: &dyn Executor) -> (Vec<Node>, Option<Child>) {
     if references.is_empty() {
         return (Vec::new(), None);
     }
@@ -320,6 +250,7 @@ fn cost(count: u32, around: &Box4) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kirkas_geometry::{Bounds3, Vec3};
 
     /// Boxes of which every split peels off a few, begun so deep that the room for it runs out.
     #[test]

@@ -1,0 +1,5 @@
+//! Builders: each turns references into a binary tree. None of them knows a ray.
+
+pub(crate) mod binary;
+pub(crate) mod binned_sah;
+pub(crate) mod reference;

@@ -1,0 +1,121 @@
+//! A primitive as a leaf holds it, and its test: what the structures that keep no blocks of their own share.
+
+use crate::build::reference::{MAX_ID, Reference};
+use crate::instance::PlacedInstance;
+use crate::prepared_ray::PreparedRay;
+use crate::scene_geometry::{Geometry, Shape, Sphere};
+use crate::search::{Level, Search};
+use crate::triangle::Corners;
+use crate::{primitive, sphere, triangle};
+use kirkas_geometry::{Bounds3, Vec3};
+
+/// The geometry field of a reference to an instance.
+pub(crate) const IS_INSTANCE: u32 = MAX_ID;
+
+/// What a level holds, before a structure is built over it.
+pub(crate) struct Gathered {
+    pub references: Vec<Reference>,
+    /// What no box holds; to be tested by every ray.
+    pub unbounded: Vec<Record>,
+}
+
+/// Gather the boxes of a level; what is empty is left out.
+pub(crate) fn gather(geometries: &[Geometry], instances: &[PlacedInstance]) -> Gathered {
+    let count = geometries.iter().map(|g| g.shape.len()).sum::<usize>() + instances.len();
+    let mut all = Gathered { references: Vec::with_capacity(count), unbounded: Vec::new() };
+    for (bounds, geometry, index) in all_references(geometries, instances) {
+        if bounds.is_finite() {
+            all.references.push(Reference::new(&bounds, geometry, index));
+        } else if !bounds.is_empty() {
+            all.unbounded.push(Record::new(geometries, geometry, index));
+        }
+    }
+    all
+}
+
+/// Every primitive and instance of a level with its bounds.
+pub(crate) fn all_references<'a>(
+    geometries: &'a [Geometry],
+    instances: &'a [PlacedInstance],
+) -> impl Iterator<Item = (Bounds3, u32, u32)> + 'a {
+    let primitives = geometries.iter().enumerate().flat_map(|(g, geometry)| {
+        (0..geometry.shape.len() as u32).map(move |p| (primitive::bounds(&geometry.shape, p), g as u32, p))
+    });
+    primitives.chain(instances.iter().enumerate().map(|(i, instance)| (instance.bounds, IS_INSTANCE, i as u32)))
+}
+
+/// A primitive as a leaf holds it: everything its test needs, without following an index.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Record {
+    /// A triangle's corners; a sphere's center and, in `[1][0]`, radius; otherwise unused.
+    pub corners: Corners,
+    /// Index of the geometry; for an instance unused.
+    pub geometry: u32,
+    /// Index of the primitive, or of the instance.
+    pub primitive: u32,
+    pub kind: RecordKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(crate) enum RecordKind {
+    Triangle,
+    Sphere,
+    User,
+    Instance,
+}
+
+impl Record {
+    /// The record of a primitive or, with [`IS_INSTANCE`], of an instance.
+    pub fn new(geometries: &[Geometry], geometry: u32, primitive: u32) -> Self {
+        let (kind, corners) = match geometries.get(geometry as usize).map(|g| &g.shape) {
+            None => (RecordKind::Instance, [[0.0; 3]; 3]),
+            Some(Shape::Triangles { positions, indices }) => {
+                (RecordKind::Triangle, primitive::corners(positions, indices[primitive as usize]))
+            }
+            Some(Shape::Spheres(spheres)) => {
+                let s = &spheres[primitive as usize];
+                (RecordKind::Sphere, [s.center.to_array(), [s.radius, 0.0, 0.0], [0.0; 3]])
+            }
+            Some(Shape::User(_)) => (RecordKind::User, [[0.0; 3]; 3]),
+        };
+        Record { corners, geometry, primitive, kind }
+    }
+
+    /// Test it; `enter` searches an instance.
+    #[inline(always)]
+    pub fn test<const ANY: bool>(
+        &self,
+        level: Level,
+        ray: &PreparedRay,
+        search: &mut Search<ANY>,
+        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
+    ) {
+        let (geometry, index) = (self.geometry, self.primitive);
+        match self.kind {
+            RecordKind::Triangle => {
+                search.counters.primitives_tested += 1;
+                if let Some(crossing) = triangle::intersect(&self.corners, ray) {
+                    search.offer(level, geometry, index, crossing);
+                }
+            }
+            RecordKind::Sphere => {
+                search.counters.primitives_tested += 1;
+                sphere::intersect(&self.sphere(), ray, |t| search.offer(level, geometry, index, (t, 0.0, 0.0)));
+            }
+            RecordKind::User => {
+                search.counters.primitives_tested += 1;
+                if let Shape::User(user) = &level.geometries[geometry as usize].shape {
+                    let mut offer = |t, u, v| search.offer(level, geometry, index, (t, u, v));
+                    primitive::intersect_user(&**user, index, ray, &mut offer);
+                }
+            }
+            RecordKind::Instance => enter(search, index),
+        }
+    }
+
+    #[inline]
+    pub fn sphere(&self) -> Sphere {
+        Sphere { center: Vec3::from_array(self.corners[0]), radius: self.corners[1][0] }
+    }
+}

@@ -1,0 +1,74 @@
+//! The closed list of structures over one level: the world with its instances, or one aggregate.
+
+use crate::instance::PlacedInstance;
+use crate::prepared_ray::PreparedRay;
+use crate::scene_geometry::Geometry;
+use crate::search::{Level, Search};
+use crate::{AccelKind, Executor, brute_force, bvh2};
+
+/// A structure over one level.
+pub(crate) enum Structure {
+    BruteForce,
+    Bvh2(bvh2::Tree),
+}
+
+/// What a structure looks like.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Measures {
+    /// Inner nodes.
+    pub nodes: usize,
+    /// Memory.
+    pub bytes: usize,
+    /// Expected cost of a random ray.
+    pub sah_cost: f64,
+    /// Levels of inner nodes.
+    pub depth: usize,
+}
+
+impl Structure {
+    /// Build over a level.
+    pub fn build(
+        kind: AccelKind,
+        geometries: &[Geometry],
+        instances: &[PlacedInstance],
+        executor: &dyn Executor,
+    ) -> Self {
+        match kind {
+            AccelKind::BruteForce => Structure::BruteForce,
+            AccelKind::Bvh2 => Structure::Bvh2(bvh2::Tree::build(geometries, instances, executor)),
+        }
+    }
+
+    /// Search all that the level holds; `enter` searches the instance of this index.
+    #[inline]
+    pub fn search<const ANY: bool>(
+        &self,
+        level: Level,
+        ray: &PreparedRay,
+        search: &mut Search<ANY>,
+        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
+    ) {
+        match self {
+            Structure::BruteForce => brute_force::search(level, ray, search, enter),
+            Structure::Bvh2(tree) => tree.search(level, ray, search, enter),
+        }
+    }
+
+    /// Size and quality.
+    pub fn measures(&self) -> Measures {
+        match self {
+            Structure::BruteForce => Measures::default(),
+            Structure::Bvh2(t) => {
+                Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
+            }
+        }
+    }
+
+    /// Check every invariant; says what is wrong first.
+    pub fn validate(&self, geometries: &[Geometry], instances: &[PlacedInstance]) -> Result<(), String> {
+        match self {
+            Structure::BruteForce => Ok(()),
+            Structure::Bvh2(tree) => tree.validate(geometries, instances),
+        }
+    }
+}
