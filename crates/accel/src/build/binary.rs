@@ -10,6 +10,7 @@ pub(crate) const MAX_DEPTH: usize = 64;
 
 /// A binary tree over references.
 pub(crate) struct BinaryTree {
+    /// Depth first: a node, all below its first child, all below its second.
     pub nodes: Vec<Node>,
     /// `None` when there are no references.
     pub root: Option<Child>,

@@ -2,4 +2,8 @@
 
 pub(crate) mod binary;
 pub(crate) mod binned_sah;
+#[allow(dead_code)]
+pub(crate) mod collapse;
 pub(crate) mod reference;
+#[cfg(test)]
+pub(crate) mod testing;

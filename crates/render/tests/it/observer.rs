@@ -164,7 +164,10 @@ fn a_pane_of_glass_gives_a_tree() {
 #[test]
 fn no_two_rays_of_a_sample_have_the_same_branch() {
     let rough = MIRRORS
-        .replace("[materials.coat]\ntype = \"phong\"\ndiffuse = 0.5\nreflect = 0.5", "[materials.coat]\ntype = \"rough_dielectric\"\nroughness = 0.1")
+        .replace(
+            "[materials.coat]\ntype = \"phong\"\ndiffuse = 0.5\nreflect = 0.5",
+            "[materials.coat]\ntype = \"rough_dielectric\"\nroughness = 0.1",
+        )
         .replace("max_depth = 3", "max_depth = 3\nmin_contribution = 0\nglossy_samples = 5");
     let r = recorded(&prepared(&rough), 0, 0, 1);
     let mut branches: Vec<u64> = r.rays.iter().map(|r| r.3).collect();

@@ -1,9 +1,9 @@
 //! The recursive tracer's rules, each in a scene whose answer can be computed by hand.
 
 use crate::support::{Rgb, assert_near, expose, grey, one_pixel, pixel, prepared, prepared_with, render, seen};
+use kirkas_render::integrators::MediumStack;
 use kirkas_render::render::Undisturbed;
 use kirkas_render::{Film, Options, Statistics};
-use kirkas_render::integrators::MediumStack;
 
 const UP_Z: Rgb = [0.0, 0.0, 5.0];
 const ORIGIN: Rgb = [0.0; 3];
@@ -457,7 +457,9 @@ fn what_is_not_visible_is_hidden_from_the_camera_only() {
 /// A flat face in the plane z = 0 whose written normal leans by 53 degrees towards +x.
 fn leaning(material: &str, rest: &str) -> f64 {
     let obj = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn 0.8 0 0.6\nf 1//1 2//1 3//1\n";
-    let body = format!("{rest}\n[materials.m]\n{material}\n[objects.o]\ntype = \"mesh\"\nfile = \"face.obj\"\nmaterial = \"m\"\n");
+    let body = format!(
+        "{rest}\n[materials.m]\n{material}\n[objects.o]\ntype = \"mesh\"\nfile = \"face.obj\"\nmaterial = \"m\"\n"
+    );
     let toml = one_pixel(&body, UP_Z, ORIGIN, 1);
     let p = prepared_with(&toml, &[("face.obj", obj.as_bytes())], &Options::default());
     pixel(&expose(&p, 0..1).0, 0, 0)[1]
@@ -466,7 +468,10 @@ fn leaning(material: &str, rest: &str) -> f64 {
 #[test]
 fn a_leaning_normal_shades_but_lets_no_light_through() {
     let lit = |shadows: &str, x: f64, z: f64| {
-        let sun = format!("[integrator]\nshadows = \"{shadows}\"\n[lights.l]\ntype = \"directional\"\ndirection = [{:?}, 0, {:?}]\n", -x, -z);
+        let sun = format!(
+            "[integrator]\nshadows = \"{shadows}\"\n[lights.l]\ntype = \"directional\"\ndirection = [{:?}, 0, {:?}]\n",
+            -x, -z
+        );
         leaning("type = \"lambert\"\nreflectance = 1", &sun)
     };
     for shadows in ["opaque", "none"] {
