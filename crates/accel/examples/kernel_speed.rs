@@ -1,7 +1,7 @@
 //! How fast one thread builds and traces: a displaced sphere of a million triangles, and a flake of 66,430 spheres.
 //! `cargo run --release -p kirkas-accel --example kernel_speed`. Bench noise is 5-10 %; compare within one run only.
 
-use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, SceneGeometry, Serial, Shape, Sphere};
+use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, Query, SceneGeometry, Serial, Shape, Sphere};
 use kirkas_geometry::elementary::sin_cos_f32;
 use kirkas_geometry::hash::{combine, unit_f32};
 use kirkas_geometry::warp::square_to_cosine_hemisphere;
@@ -56,7 +56,7 @@ fn trace(name: &str, accel: &Accel, rays: &[Ray]) -> Vec<Option<Hit>> {
     for _ in 0..3 {
         counters = Counters::default();
         let start = seconds();
-        accel.closest_hits(rays, None, &mut hits, &mut counters);
+        accel.closest_hits(rays, Query::ALL, &mut hits, &mut counters);
         best = best.min(seconds() - start);
     }
     let found = hits.iter().flatten().count();
@@ -68,7 +68,7 @@ fn occlude(name: &str, accel: &Accel, rays: &[Ray]) {
     let mut occluded = vec![false; rays.len()];
     let mut counters = Counters::default();
     let start = seconds();
-    accel.any_hits(rays, None, &mut occluded, &mut counters);
+    accel.any_hits(rays, Query::ALL, &mut occluded, &mut counters);
     line(name, seconds() - start, &counters, occluded.iter().filter(|o| **o).count());
 }
 

@@ -1,23 +1,30 @@
 //! The door: build a structure over a scene, then ask it for hits.
 
-use crate::hit::{Counters, Hit, HitFilter, NO_INSTANCE};
-use crate::instance::PlacedInstance;
+use crate::hit::{Counters, Hit};
+use crate::instance::{Entered, PlacedInstance};
+use crate::path::InstancePath;
 use crate::prepared_ray::PreparedRay;
-use crate::scene_geometry::{Geometry, SceneGeometry};
+use crate::query::Query;
+use crate::scene_geometry::{Geometry, Instance, SceneGeometry};
 use crate::search::{Level, Search};
 use crate::structure::{Measures, Structure};
-use crate::{AccelError, AccelKind, Executor, check, primitive};
+use crate::{AccelError, AccelKind, Executor, check, record};
 use kirkas_geometry::{Bounds3, Ray};
 
 /// A structure over a scene. Immutable, and shared by as many threads as the caller likes.
 pub struct Accel {
     kind: AccelKind,
     scene: SceneGeometry,
-    instances: Vec<PlacedInstance>,
     bounds: Bounds3,
-    /// Over the world, and over each aggregate.
-    world: Structure,
-    aggregates: Vec<Structure>,
+    world: Built,
+    aggregates: Vec<Built>,
+}
+
+/// The structure over the world or over an aggregate.
+#[derive(Default)]
+struct Built {
+    structure: Structure,
+    instances: Vec<PlacedInstance>,
 }
 
 /// What a structure looks like.
@@ -27,7 +34,7 @@ pub struct Statistics {
     pub nodes: usize,
     /// Primitives, each aggregate counted once.
     pub primitives: usize,
-    /// Placed instances.
+    /// Placed instances, those within an aggregate counted once.
     pub instances: usize,
     /// Memory of the structure, without the scene's own arrays.
     pub bytes: usize,
@@ -41,68 +48,52 @@ impl Accel {
     /// Build. The result does not depend on the executor.
     pub fn build(kind: AccelKind, scene: SceneGeometry, executor: &dyn Executor) -> Result<Accel, AccelError> {
         check::scene(&scene)?;
-        let build = |a: &Vec<Geometry>| Structure::build(kind, a, &[], executor);
-        let aggregates: Vec<Structure> = scene.aggregates.iter().map(build).collect();
-        let object_bounds: Vec<Bounds3> = scene.aggregates.iter().map(|a| whole_bounds(a)).collect();
-        let place = |i: &crate::Instance| PlacedInstance::new(i, &object_bounds[i.aggregate], scene.shutter);
-        let instances: Vec<PlacedInstance> = scene.instances.iter().map(place).collect();
-        let world = Structure::build(kind, &scene.world, &instances, executor);
-        let placed = instances.iter().map(|i| i.bounds).filter(Bounds3::is_finite);
-        let bounds = placed.fold(finite_bounds(&scene.world), Bounds3::union);
-        Ok(Accel { kind, scene, instances, bounds, world, aggregates })
+        let aggregates = &scene.aggregates;
+        let mut whole = vec![Bounds3::EMPTY; aggregates.len()];
+        let place = |instances: &[Instance], whole: &[Bounds3]| -> Vec<PlacedInstance> {
+            instances.iter().map(|i| PlacedInstance::new(i, &whole[i.aggregate], scene.shutter)).collect()
+        };
+        let mut built: Vec<Built> = aggregates.iter().map(|_| Built::default()).collect();
+        for i in check::build_order(&scene)?.order {
+            let instances = place(&aggregates[i].instances, &whole);
+            whole[i] = all_bounds(&aggregates[i].geometries, &instances).fold(Bounds3::EMPTY, Bounds3::union);
+            let structure = Structure::build(kind, &aggregates[i].geometries, &instances, executor);
+            built[i] = Built { structure, instances };
+        }
+        let instances = place(&scene.instances, &whole);
+        let finite = all_bounds(&scene.world, &instances).filter(Bounds3::is_finite);
+        let bounds = finite.fold(Bounds3::EMPTY, Bounds3::union);
+        let structure = Structure::build(kind, &scene.world, &instances, executor);
+        Ok(Accel { kind, scene, bounds, world: Built { structure, instances }, aggregates: built })
     }
 
-    /// The nearest hit. `ray_index` is handed to the filter.
-    pub fn closest_hit(
-        &self,
-        ray: &Ray,
-        filter: Option<&dyn HitFilter>,
-        ray_index: usize,
-        counters: &mut Counters,
-    ) -> Option<Hit> {
-        let mut search = Search::<false>::new(ray, ray_index, filter, counters);
+    /// The nearest hit. `ray_index` is handed to the query's filter, and finds what this ray excludes.
+    pub fn closest_hit(&self, ray: &Ray, query: Query, ray_index: usize, counters: &mut Counters) -> Option<Hit> {
+        let mut search = Search::<false>::new(ray, ray_index, query, counters);
         self.search(ray, &mut search);
         search.best
     }
 
-    /// True when anything is hit. `ray_index` is handed to the filter.
-    pub fn any_hit(
-        &self,
-        ray: &Ray,
-        filter: Option<&dyn HitFilter>,
-        ray_index: usize,
-        counters: &mut Counters,
-    ) -> bool {
-        let mut search = Search::<true>::new(ray, ray_index, filter, counters);
+    /// True when anything is hit. `ray_index` is handed to the query's filter, and finds what this ray excludes.
+    pub fn any_hit(&self, ray: &Ray, query: Query, ray_index: usize, counters: &mut Counters) -> bool {
+        let mut search = Search::<true>::new(ray, ray_index, query, counters);
         self.search(ray, &mut search);
         search.best.is_some()
     }
 
     /// The nearest hit of each ray, as [`Accel::closest_hit`] gives it. The slices must be of one length.
-    pub fn closest_hits(
-        &self,
-        rays: &[Ray],
-        filter: Option<&dyn HitFilter>,
-        hits: &mut [Option<Hit>],
-        counters: &mut Counters,
-    ) {
+    pub fn closest_hits(&self, rays: &[Ray], query: Query, hits: &mut [Option<Hit>], counters: &mut Counters) {
         assert_eq!(rays.len(), hits.len(), "as many answers as rays");
         for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
-            *hit = self.closest_hit(ray, filter, i, counters);
+            *hit = self.closest_hit(ray, query, i, counters);
         }
     }
 
     /// Whether each ray hits anything, as [`Accel::any_hit`] tells. The slices must be of one length.
-    pub fn any_hits(
-        &self,
-        rays: &[Ray],
-        filter: Option<&dyn HitFilter>,
-        occluded: &mut [bool],
-        counters: &mut Counters,
-    ) {
+    pub fn any_hits(&self, rays: &[Ray], query: Query, occluded: &mut [bool], counters: &mut Counters) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
         for (i, (ray, answer)) in rays.iter().zip(occluded).enumerate() {
-            *answer = self.any_hit(ray, filter, i, counters);
+            *answer = self.any_hit(ray, query, i, counters);
         }
     }
 
@@ -124,12 +115,15 @@ impl Accel {
     /// Size and quality.
     pub fn statistics(&self) -> Statistics {
         let count = |g: &[Geometry]| g.iter().map(|g| g.shape.len()).sum::<usize>();
-        let all: Vec<Measures> = self.aggregates.iter().chain([&self.world]).map(Structure::measures).collect();
+        let built = || self.aggregates.iter().chain([&self.world]);
+        let all: Vec<Measures> = built().map(|b| b.structure.measures()).collect();
+        let instances = built().map(|b| b.instances.len()).sum::<usize>();
+        let in_aggregates = self.scene.aggregates.iter().map(|a| count(&a.geometries)).sum::<usize>();
         Statistics {
             nodes: all.iter().map(|m| m.nodes).sum(),
-            primitives: count(&self.scene.world) + self.scene.aggregates.iter().map(|a| count(a)).sum::<usize>(),
-            instances: self.instances.len(),
-            bytes: all.iter().map(|m| m.bytes).sum::<usize>() + self.instances.len() * size_of::<PlacedInstance>(),
+            primitives: count(&self.scene.world) + in_aggregates,
+            instances,
+            bytes: all.iter().map(|m| m.bytes).sum::<usize>() + instances * size_of::<PlacedInstance>(),
             sah_cost: all.last().map_or(0.0, |world| world.sah_cost),
             depth: all.iter().map(|m| m.depth).max().unwrap_or(0),
         }
@@ -138,45 +132,69 @@ impl Accel {
     /// Check every invariant of the trees: each primitive in exactly one leaf, each box around all below it, depth within
     /// the stack. Says what is wrong first.
     pub fn validate(&self) -> Result<(), String> {
-        self.world.validate(&self.scene.world, &self.instances).map_err(|e| format!("world: {e}"))?;
-        for (i, (tree, geometries)) in self.aggregates.iter().zip(&self.scene.aggregates).enumerate() {
-            tree.validate(geometries, &[]).map_err(|e| format!("aggregate {i}: {e}"))?;
+        let world = &self.world;
+        world.structure.validate(&self.scene.world, &world.instances).map_err(|e| format!("world: {e}"))?;
+        for (i, (built, a)) in self.aggregates.iter().zip(&self.scene.aggregates).enumerate() {
+            let valid = built.structure.validate(&a.geometries, &built.instances);
+            valid.map_err(|e| format!("aggregate {i}: {e}"))?;
         }
         Ok(())
     }
 
     fn search<const ANY: bool>(&self, ray: &Ray, search: &mut Search<ANY>) {
         let Some(ray) = PreparedRay::new(ray) else { return };
-        let instances = self.instances.len() as u32;
-        let level = Level { geometries: &self.scene.world, instances, instance: NO_INSTANCE };
-        self.world.search(level, &ray, search, &mut |search, index| self.search_instance(index, &ray, search));
+        let instances = self.world.instances.len() as u32;
+        let level = Level { geometries: &self.scene.world, instances, instance: InstancePath::WORLD };
+        self.world
+            .structure
+            .search(level, &ray, search, &mut |search, index| self.search_instance(index, &ray, search));
     }
 
+    /// Search an instance of the world.
     fn search_instance<const ANY: bool>(&self, index: u32, ray: &PreparedRay, search: &mut Search<ANY>) {
         if search.is_done() {
             return;
         }
-        let placed = &self.instances[index as usize];
+        let placed = &self.world.instances[index as usize];
         let Some(ray) = placed.enter(ray) else { return };
-        let geometries = &self.scene.aggregates[placed.aggregate];
-        let level = Level { geometries, instances: 0, instance: index };
-        self.aggregates[placed.aggregate].search(level, &ray, search, &mut |_, _| {});
+        let instance = InstancePath::WORLD.then(index);
+        let built = &self.aggregates[placed.aggregate];
+        if built.instances.is_empty() {
+            let level =
+                Level { geometries: &self.scene.aggregates[placed.aggregate].geometries, instances: 0, instance };
+            built.structure.search(level, &ray, search, &mut |_, _| {});
+        } else {
+            let world_from_object = placed.place(&self.scene.instances[index as usize], search.ray.time);
+            self.search_aggregate(placed.aggregate, instance, &Entered { ray, world_from_object }, search);
+        }
+    }
+
+    /// Search an aggregate that holds instances.
+    fn search_aggregate<const ANY: bool>(
+        &self,
+        aggregate: usize,
+        instance: InstancePath,
+        entered: &Entered,
+        search: &mut Search<ANY>,
+    ) {
+        let (built, held) = (&self.aggregates[aggregate], &self.scene.aggregates[aggregate]);
+        let level = Level { geometries: &held.geometries, instances: built.instances.len() as u32, instance };
+        built.structure.search(level, &entered.ray, search, &mut |search, index| {
+            let placed = &built.instances[index as usize];
+            if search.is_done() {
+                return;
+            }
+            if let Some(inner) = placed.enter_from(&held.instances[index as usize], entered, search.ray) {
+                self.search_aggregate(placed.aggregate, instance.then(index), &inner, search);
+            }
+        });
     }
 }
 
-/// The box around every primitive, unbounded ones too.
-fn whole_bounds(geometries: &[Geometry]) -> Bounds3 {
-    all_bounds(geometries).fold(Bounds3::EMPTY, Bounds3::union)
-}
-
-/// The box around the bounded primitives.
-fn finite_bounds(geometries: &[Geometry]) -> Bounds3 {
-    all_bounds(geometries).filter(Bounds3::is_finite).fold(Bounds3::EMPTY, Bounds3::union)
-}
-
-fn all_bounds(geometries: &[Geometry]) -> impl Iterator<Item = Bounds3> + '_ {
-    geometries
-        .iter()
-        .flat_map(|g| (0..g.shape.len() as u32).map(|p| primitive::bounds(&g.shape, p)))
-        .filter(|b| !b.is_empty())
+/// The boxes of all that a level holds and that is not empty, unbounded ones too.
+fn all_bounds<'a>(
+    geometries: &'a [Geometry],
+    instances: &'a [PlacedInstance],
+) -> impl Iterator<Item = Bounds3> + use<'a> {
+    record::all_references(geometries, instances).map(|(bounds, ..)| bounds).filter(|b| !b.is_empty())
 }

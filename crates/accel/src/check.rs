@@ -1,6 +1,7 @@
 //! What a scene must satisfy before a structure is built over it.
 
 use crate::error::AccelError;
+use crate::path::MAX_NESTING;
 use crate::scene_geometry::{Geometry, Instance, SceneGeometry, Shape};
 use kirkas_geometry::transform::is_invertible;
 
@@ -15,18 +16,76 @@ pub(crate) fn scene(scene: &SceneGeometry) -> Result<(), AccelError> {
     }
     level(&scene.world, None, scene.instances.len())?;
     for (i, aggregate) in scene.aggregates.iter().enumerate() {
-        level(aggregate, Some(i), 0)?;
+        level(&aggregate.geometries, Some(i), aggregate.instances.len())?;
     }
-    scene.instances.iter().enumerate().try_for_each(|(i, instance)| placement(i, instance, scene.aggregates.len()))
+    let count = scene.aggregates.len();
+    placements(&scene.instances, None, count)?;
+    for (i, aggregate) in scene.aggregates.iter().enumerate() {
+        placements(&aggregate.instances, Some(i), count)?;
+    }
+    let levels = build_order(scene)?.levels;
+    match scene.instances.iter().position(|i| levels[i.aggregate] >= MAX_NESTING) {
+        Some(instance) => {
+            let levels = levels[scene.instances[instance].aggregate] + 1;
+            Err(AccelError::NestedTooDeep { instance, levels, limit: MAX_NESTING })
+        }
+        None => Ok(()),
+    }
 }
 
-fn placement(index: usize, instance: &Instance, aggregates: usize) -> Result<(), AccelError> {
-    if instance.aggregate >= aggregates {
-        return Err(AccelError::NoSuchAggregate { instance: index, aggregate: instance.aggregate, aggregates });
+/// Aggregates sorted by what they hold.
+pub(crate) struct BuildOrder {
+    /// Every aggregate, after all that it places.
+    pub order: Vec<usize>,
+    /// How many instances stand in one another below each aggregate.
+    pub levels: Vec<usize>,
+}
+
+/// The order in which aggregates can be built; the error is an aggregate that holds itself.
+pub(crate) fn build_order(scene: &SceneGeometry) -> Result<BuildOrder, AccelError> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mark {
+        New,
+        Open,
+        Done,
     }
-    let m = &instance.world_from_object;
-    let broken = m.key_times().find(|&t| !t.is_finite() || !is_invertible(&m.at(t)));
-    broken.map_or(Ok(()), |time| Err(AccelError::BadTransform { instance: index, time }))
+    let aggregates = &scene.aggregates;
+    let mut marks = vec![Mark::New; aggregates.len()];
+    let (mut order, mut levels) = (Vec::with_capacity(aggregates.len()), vec![0; aggregates.len()]);
+    for start in 0..aggregates.len() {
+        // Depth first, with a stack of its own: (aggregate, which of its instances comes next).
+        let mut todo = vec![(start, 0)];
+        while let Some((at, next)) = todo.pop() {
+            if next == 0 && marks[at] != Mark::New {
+                continue;
+            }
+            marks[at] = Mark::Open;
+            match aggregates[at].instances.get(next).map(|i| i.aggregate) {
+                Some(inner) if marks[inner] == Mark::Open => return Err(AccelError::Cycle { aggregate: inner }),
+                Some(inner) => todo.extend([(at, next + 1), (inner, 0)]),
+                None => {
+                    marks[at] = Mark::Done;
+                    levels[at] = aggregates[at].instances.iter().map(|i| levels[i.aggregate] + 1).max().unwrap_or(0);
+                    order.push(at);
+                }
+            }
+        }
+    }
+    Ok(BuildOrder { order, levels })
+}
+
+fn placements(instances: &[Instance], within: Option<usize>, aggregates: usize) -> Result<(), AccelError> {
+    for (index, instance) in instances.iter().enumerate() {
+        if instance.aggregate >= aggregates {
+            let aggregate = instance.aggregate;
+            return Err(AccelError::NoSuchAggregate { within, instance: index, aggregate, aggregates });
+        }
+        let m = &instance.outer_from_object;
+        if let Some(time) = m.key_times().find(|&t| !t.is_finite() || !is_invertible(&m.at(t))) {
+            return Err(AccelError::BadTransform { within, instance: index, time });
+        }
+    }
+    Ok(())
 }
 
 fn level(geometries: &[Geometry], aggregate: Option<usize>, instances: usize) -> Result<(), AccelError> {

@@ -40,7 +40,9 @@ pub enum AccelError {
     },
     /// An instance names an aggregate that does not exist.
     NoSuchAggregate {
-        /// Index of the instance.
+        /// The aggregate that holds the instance; `None` is the world itself.
+        within: Option<usize>,
+        /// Index of the instance there.
         instance: usize,
         /// The aggregate it names.
         aggregate: usize,
@@ -49,10 +51,26 @@ pub enum AccelError {
     },
     /// An instance's transform cannot be inverted, or holds NaN or infinity, at this time.
     BadTransform {
-        /// Index of the instance.
+        /// The aggregate that holds the instance; `None` is the world itself.
+        within: Option<usize>,
+        /// Index of the instance there.
         instance: usize,
         /// Seconds.
         time: f64,
+    },
+    /// An aggregate holds itself, by its own instances or by those of what it places.
+    Cycle {
+        /// Index of the aggregate.
+        aggregate: usize,
+    },
+    /// Instances stand in instances too deep.
+    NestedTooDeep {
+        /// Index of the outermost instance, in the world.
+        instance: usize,
+        /// How deep.
+        levels: usize,
+        /// How deep they may.
+        limit: usize,
     },
     /// The shutter ends before it starts, or is not finite.
     BadShutter {
@@ -69,6 +87,7 @@ impl fmt::Display for AccelError {
             None => "the world".to_string(),
             Some(a) => format!("aggregate {a}"),
         };
+        let inside = |within: &Option<usize>| within.map_or(String::new(), |a| format!(" in aggregate {a}"));
         match self {
             Self::NotFinite { aggregate, geometry, element, what } => {
                 write!(f, "{what} {element} of geometry {geometry} in {} is not a finite number", place(aggregate))
@@ -81,11 +100,19 @@ impl fmt::Display for AccelError {
             Self::TooManyPrimitives { aggregate, count, limit } => {
                 write!(f, "{} holds {count} primitives; the limit is {limit}", place(aggregate))
             }
-            Self::NoSuchAggregate { instance, aggregate, aggregates } => {
-                write!(f, "instance {instance} places aggregate {aggregate}, but there are {aggregates}")
+            Self::NoSuchAggregate { within, instance, aggregate, aggregates } => {
+                write!(
+                    f,
+                    "instance {instance}{} places aggregate {aggregate}, but there are {aggregates}",
+                    inside(within)
+                )
             }
-            Self::BadTransform { instance, time } => {
-                write!(f, "the transform of instance {instance} cannot be inverted at time {time}")
+            Self::BadTransform { within, instance, time } => {
+                write!(f, "the transform of instance {instance}{} cannot be inverted at time {time}", inside(within))
+            }
+            Self::Cycle { aggregate } => write!(f, "aggregate {aggregate} holds an instance of itself"),
+            Self::NestedTooDeep { instance, levels, limit } => {
+                write!(f, "instance {instance} holds instances {levels} deep, itself counted; the limit is {limit}")
             }
             Self::BadShutter { start, end } => write!(f, "the shutter cannot be open from {start} to {end}"),
         }

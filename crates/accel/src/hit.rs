@@ -1,9 +1,6 @@
-//! What a ray finds, who may refuse it, and what the search cost.
+//! What a ray finds, and what the search cost.
 
-use kirkas_geometry::Ray;
-
-/// `Hit::instance` of geometry that stands in the world itself.
-pub const NO_INSTANCE: u32 = u32::MAX;
+use crate::path::InstancePath;
 
 /// Where a ray meets a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,28 +11,37 @@ pub struct Hit {
     pub u: f32,
     /// Triangles: barycentric weight of vertex 2. Spheres: 0. User shapes: theirs.
     pub v: f32,
-    /// Index into `SceneGeometry::instances`, or [`NO_INSTANCE`].
-    pub instance: u32,
-    /// Index into `SceneGeometry::world`, or into the instance's aggregate.
+    /// The instances around the primitive, outermost first; [`InstancePath::WORLD`] for geometry of the world itself.
+    pub instance: InstancePath,
+    /// Index into `SceneGeometry::world`, or into the innermost instance's aggregate.
     pub geometry: u32,
     /// Index of the triangle, sphere or user primitive within its geometry.
     pub primitive: u32,
 }
 
+/// A primitive, as a hit names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrimitiveId {
+    /// `Hit::instance`.
+    pub instance: InstancePath,
+    /// `Hit::geometry`.
+    pub geometry: u32,
+    /// `Hit::primitive`.
+    pub primitive: u32,
+}
+
 impl Hit {
+    /// What was hit.
+    #[inline]
+    pub fn id(&self) -> PrimitiveId {
+        PrimitiveId { instance: self.instance, geometry: self.geometry, primitive: self.primitive }
+    }
+
     /// The order in which hits win: nearest first, then lowest (instance, geometry, primitive).
     #[inline]
     pub(crate) fn beats(&self, other: &Hit) -> bool {
-        let ids = |h: &Hit| (h.instance, h.geometry, h.primitive);
-        self.t < other.t || (self.t == other.t && ids(self) < ids(other))
+        self.t < other.t || (self.t == other.t && self.id() < other.id())
     }
-}
-
-/// Decides whether a hit counts. Asked only for geometry with `opaque == false`; must be a pure function of its
-/// arguments, since how often and in which order it is asked depends on the structure.
-pub trait HitFilter: Sync {
-    /// `ray_index` is the ray's place in the batch; `ray` is in world space, also for hits inside an instance.
-    fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool;
 }
 
 /// What searches cost, always counted.

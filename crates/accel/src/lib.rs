@@ -4,7 +4,7 @@
 //! **A hit has one definition**, shared by every structure. A primitive is hit when its own test passes ([`triangle`],
 //! [`sphere`], [`UserShape`]), its own bounds pass [`Bounds3::intersect`], and `t` lies in the ray's open interval; `t` is
 //! then clamped into the interval within those bounds (and within the bounds of its instance). The nearest `t` wins, ties
-//! go to the lowest (instance, geometry, primitive). Box tests are monotone and equal `t` is never culled, so every tree
+//! go to the lowest (path of instances, geometry, primitive). Box tests are monotone and equal `t` is never culled, so every tree
 //! of boxes answers exactly as [`AccelKind::BruteForce`] does, to the bit.
 //!
 //! ```
@@ -19,7 +19,7 @@
 //! };
 //! let accel = Accel::build(AccelKind::Bvh2, scene, &Serial)?;
 //! let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), -Vec3::Z);
-//! let hit = accel.closest_hit(&ray, None, 0, &mut Counters::default()).unwrap();
+//! let hit = accel.closest_hit(&ray, Query::ALL, 0, &mut Counters::default()).unwrap();
 //! assert_eq!(hit.t, 4.0);
 //! # Ok::<(), AccelError>(())
 //! ```
@@ -34,8 +34,10 @@ mod executor;
 mod hit;
 mod instance;
 mod kind;
+mod path;
 mod prepared_ray;
 mod primitive;
+mod query;
 mod record;
 mod scene_geometry;
 mod search;
@@ -46,10 +48,12 @@ pub mod triangle;
 pub use accel::{Accel, Statistics};
 pub use error::AccelError;
 pub use executor::{Executor, Serial};
-pub use hit::{Counters, Hit, HitFilter, NO_INSTANCE};
+pub use hit::{Counters, Hit, PrimitiveId};
 pub use kind::AccelKind;
+pub use path::{InstancePath, MAX_NESTING, NO_INSTANCE};
 pub use prepared_ray::PreparedRay;
-pub use scene_geometry::{Geometry, Instance, SceneGeometry, Shape, Sphere, UserShape};
+pub use query::{HitFilter, Query};
+pub use scene_geometry::{Aggregate, Geometry, Instance, SceneGeometry, Shape, Sphere, UserShape};
 
 #[cfg(doc)]
 use kirkas_geometry::Bounds3;

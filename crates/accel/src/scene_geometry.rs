@@ -73,14 +73,30 @@ pub struct Geometry {
     pub mask: u32,
 }
 
-/// An aggregate, placed into the world.
+/// What can be placed as a whole, as often as wanted: geometry, and instances of other aggregates.
+#[derive(Clone, Default)]
+pub struct Aggregate {
+    /// Geometry that stands in the aggregate itself.
+    pub geometries: Vec<Geometry>,
+    /// The places of other aggregates within this one. No aggregate may hold itself, and instances stand in instances at
+    /// most [`MAX_NESTING`](crate::MAX_NESTING) deep.
+    pub instances: Vec<Instance>,
+}
+
+impl From<Vec<Geometry>> for Aggregate {
+    fn from(geometries: Vec<Geometry>) -> Self {
+        Aggregate { geometries, instances: Vec::new() }
+    }
+}
+
+/// An aggregate, placed into the world or into another aggregate.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// Index into `SceneGeometry::aggregates`.
     pub aggregate: usize,
-    /// Where it stands, as a function of time.
-    pub world_from_object: AnimatedTransform,
-    /// Seen by rays with `ray.mask & mask != 0`, where the geometry's own mask agrees.
+    /// Where it stands in the world, or in the aggregate that holds it, as a function of time.
+    pub outer_from_object: AnimatedTransform,
+    /// Seen by rays with `ray.mask & mask != 0`, where the masks of the geometry and of all instances around agree.
     pub mask: u32,
 }
 
@@ -89,9 +105,9 @@ pub struct Instance {
 pub struct SceneGeometry {
     /// Geometry that stands in the world itself.
     pub world: Vec<Geometry>,
-    /// Geometry to be instanced; each aggregate gets one tree, however often it is placed.
-    pub aggregates: Vec<Vec<Geometry>>,
-    /// The places of the aggregates.
+    /// What is to be placed; each aggregate gets one tree, however often it is placed.
+    pub aggregates: Vec<Aggregate>,
+    /// The places of aggregates in the world.
     pub instances: Vec<Instance>,
     /// The times that rays may carry, in seconds; other times are clamped into it.
     pub shutter: (f64, f64),

@@ -1,6 +1,8 @@
 //! What a search for hits has found so far.
 
-use crate::hit::{Counters, Hit, HitFilter};
+use crate::hit::{Counters, Hit};
+use crate::path::InstancePath;
+use crate::query::Query;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Ray;
 
@@ -10,16 +12,16 @@ pub(crate) struct Level<'a> {
     pub geometries: &'a [Geometry],
     /// How many instances stand among them.
     pub instances: u32,
-    /// Index of the instance they stand in, or `NO_INSTANCE`.
-    pub instance: u32,
+    /// The instances they stand in.
+    pub instance: InstancePath,
 }
 
 /// One ray's search: for the closest hit, or (`ANY`) for any.
 pub(crate) struct Search<'a, const ANY: bool> {
-    /// The ray in world space, for the filter.
+    /// The ray in world space, for the filter and for instances.
     pub ray: &'a Ray,
     pub ray_index: usize,
-    pub filter: Option<&'a dyn HitFilter>,
+    pub query: Query<'a>,
     pub counters: &'a mut Counters,
     pub best: Option<Hit>,
     /// Boxes that are entered after this hold nothing better. Equal `t` may still win by its ids.
@@ -27,9 +29,9 @@ pub(crate) struct Search<'a, const ANY: bool> {
 }
 
 impl<'a, const ANY: bool> Search<'a, ANY> {
-    pub fn new(ray: &'a Ray, ray_index: usize, filter: Option<&'a dyn HitFilter>, counters: &'a mut Counters) -> Self {
+    pub fn new(ray: &'a Ray, ray_index: usize, query: Query<'a>, counters: &'a mut Counters) -> Self {
         counters.rays += 1;
-        Search { ray, ray_index, filter, counters, best: None, limit: ray.t_max }
+        Search { ray, ray_index, query, counters, best: None, limit: ray.t_max }
     }
 
     /// True when nothing more needs to be looked at.
@@ -49,7 +51,12 @@ impl<'a, const ANY: bool> Search<'a, ANY> {
         if g.mask & self.ray.mask == 0 {
             return true;
         }
-        if !g.opaque && self.filter.is_some_and(|f| !f.accept(self.ray_index, self.ray, &hit)) {
+        if let Some(Some(excluded)) = self.query.excluded.get(self.ray_index)
+            && *excluded == hit.id()
+        {
+            return true;
+        }
+        if !g.opaque && self.query.filter.is_some_and(|f| !f.accept(self.ray_index, self.ray, &hit)) {
             return false;
         }
         self.best = Some(hit);

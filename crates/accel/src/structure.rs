@@ -7,7 +7,9 @@ use crate::search::{Level, Search};
 use crate::{AccelKind, Executor, brute_force, bvh2};
 
 /// A structure over one level.
+#[derive(Default)]
 pub(crate) enum Structure {
+    #[default]
     BruteForce,
     Bvh2(bvh2::Tree),
 }

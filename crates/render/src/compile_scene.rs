@@ -16,7 +16,7 @@ use crate::placement::{PlacedPart, Placement, place_objects};
 use crate::sampler::SamplerKind;
 use crate::scene::{InstanceInfo, PRIMARY, PartInfo, Scene};
 use crate::textures::Textures;
-use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, SceneGeometry};
+use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, Query, SceneGeometry};
 use kirkas_geometry::{DVec3, Ray};
 
 use kirkas_scene::validate::validate;
@@ -238,12 +238,12 @@ fn compile(
     let (open, close) = camera.shutter();
     let scene_geometry = SceneGeometry {
         world: geometry(&world, &[]),
-        aggregates: aggregates.iter().zip(&overrides).map(|(a, o)| geometry(a, o)).collect(),
+        aggregates: aggregates.iter().zip(&overrides).map(|(a, o)| geometry(a, o).into()).collect(),
         instances: instances
             .iter()
             .map(|i| Instance {
                 aggregate: i.aggregate,
-                world_from_object: i.world_from_part.clone(),
+                outer_from_object: i.world_from_part.clone(),
                 mask: if i.is_visible { u32::MAX } else { !PRIMARY },
             })
             .collect(),
@@ -386,7 +386,7 @@ fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
         let mut ray = Ray { direction: way.as_vec3(), mask: u32::MAX, ..*start };
         const MOST: usize = 10_000;
         for _ in 0..MOST {
-            let Some(hit) = scene.accel.closest_hit(&ray, None, 0, &mut Counters::default()) else { break };
+            let Some(hit) = scene.accel.closest_hit(&ray, Query::ALL, 0, &mut Counters::default()) else { break };
             let s = scene.surface(&ray, &hit);
             if scene.material(&s).medium.is_some() && !met.contains(&s.material) {
                 met.push(s.material);

@@ -9,7 +9,7 @@ use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{AlphaFilter, SurfaceHit};
 use crate::statistics::Statistics;
-use kirkas_accel::Hit;
+use kirkas_accel::{Hit, Query};
 use kirkas_geometry::Ray;
 use kirkas_geometry::hash::combine;
 use kirkas_optics::{Lanes, Light};
@@ -165,7 +165,7 @@ impl<'a, O: Observer> Flock<'a, O> {
         self.hits.resize(self.rays.len(), None);
         let filter = AlphaFilter { scene: self.renderer.scene, keys: &self.keys };
         let search = &mut self.statistics.search;
-        self.renderer.scene.accel.closest_hits(&self.rays, Some(&filter), &mut self.hits, search);
+        self.renderer.scene.accel.closest_hits(&self.rays, Query::filtered(&filter), &mut self.hits, search);
     }
 
     fn step(&mut self, t: &Traveller, hit: Option<Hit>) {
@@ -228,7 +228,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 self.blocked.resize(self.rays.len(), false);
                 let filter = AlphaFilter { scene, keys: &self.keys };
                 let search = &mut self.statistics.search;
-                scene.accel.any_hits(&self.rays, Some(&filter), &mut self.blocked, search);
+                scene.accel.any_hits(&self.rays, Query::filtered(&filter), &mut self.blocked, search);
                 for (i, (s, slot)) in shadows.drain(..).enumerate() {
                     self.answer(&s, slot, self.blocked[i]);
                 }

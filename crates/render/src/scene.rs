@@ -142,7 +142,7 @@ impl SurfaceHit {
 impl Scene {
     /// What the accelerator's hit knows of its part.
     pub fn part(&self, hit: &Hit) -> &PartInfo {
-        match hit.instance {
+        match hit.instance.outermost() {
             NO_INSTANCE => &self.world[hit.geometry as usize],
             i => &self.aggregates[self.instances[i as usize].aggregate][hit.geometry as usize],
         }
@@ -153,11 +153,11 @@ impl Scene {
         let part = self.part(hit);
         let (mut material, mut object) = (part.material, part.object);
         let mut point;
-        if hit.instance == NO_INSTANCE {
+        if hit.instance.is_world() {
             point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, ray);
         } else {
             // Ask in the instance's space, and bring the answer back.
-            let instance = &self.instances[hit.instance as usize];
+            let instance = &self.instances[hit.instance.outermost() as usize];
             let (to_world, to_part) = instance.still.unwrap_or_else(|| {
                 let m = instance.world_from_part.at(f64::from(ray.time));
                 (m, m.inverse())
@@ -234,7 +234,7 @@ impl Scene {
     fn area_scale(&self, hit: &SurfaceHit) -> f64 {
         let part = self.part(&hit.hit);
         let area = part.surface.area().unwrap_or(1.0);
-        let growth = match hit.hit.instance {
+        let growth = match hit.hit.instance.outermost() {
             NO_INSTANCE => 1.0,
             i => crate::lights::area_growth(&self.instances[i as usize].world_from_part.at(0.0)),
         };
@@ -327,7 +327,7 @@ pub struct AlphaFilter<'a> {
 impl HitFilter for AlphaFilter<'_> {
     fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {
         let alpha = self.scene.alpha(ray, hit);
-        let place = u64::from(hit.instance) << 32 | u64::from(hit.geometry);
+        let place = u64::from(hit.instance.outermost()) << 32 | u64::from(hit.geometry);
         let coin = combine(combine(self.keys[ray_index], place), u64::from(hit.primitive));
         unit_f32((coin >> 32) as u32) < alpha
     }

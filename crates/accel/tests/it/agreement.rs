@@ -70,16 +70,16 @@ fn placement(r: &mut Random) -> DAffine3 {
 
 fn scene(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3>) {
     let (world, corners) = shapes(r, n);
-    let aggregates: Vec<Vec<Geometry>> = (0..r.below(3)).map(|_| shapes(r, n / 4).0).collect();
+    let aggregates: Vec<Aggregate> = (0..r.below(3)).map(|_| shapes(r, n / 4).0.into()).collect();
     let mut instances = Vec::new();
     for i in 0..aggregates.len() * 6 {
         let first = placement(r);
-        let world_from_object = match r.below(3) {
+        let outer_from_object = match r.below(3) {
             0 => AnimatedTransform::from_keys(&[(0.0, first), (0.7, placement(r)), (1.0, first)]).unwrap(),
             _ => AnimatedTransform::still(first),
         };
         let mask = [u32::MAX, 3][r.below(2) as usize];
-        instances.push(Instance { aggregate: i % aggregates.len(), world_from_object, mask });
+        instances.push(Instance { aggregate: i % aggregates.len(), outer_from_object, mask });
     }
     (SceneGeometry { world, aggregates, instances, shutter: (0.0, 1.0) }, corners)
 }
@@ -160,8 +160,9 @@ fn hits_have_the_same_bits_everywhere() {
         let accel = crate::common::build(AccelKind::Bvh2, &scene);
         for _ in 0..500 {
             let hit = crate::common::closest(&accel, &ray(r, &corners));
-            let bits = crate::common::bits(hit).unwrap_or([7; 6]);
-            hash = bits.iter().fold(hash, |h, &b| kirkas_geometry::hash::combine(h, b.into()));
+            let ids = hit.map_or([7; 3], |h| [h.instance.outermost(), h.geometry, h.primitive]);
+            let numbers = hit.map_or([7; 3], |h| [h.t, h.u, h.v].map(f32::to_bits));
+            hash = numbers.iter().chain(&ids).fold(hash, |h, &b| kirkas_geometry::hash::combine(h, b.into()));
         }
     }
     assert_eq!(format!("{hash:016x}"), "d63610032fd77faf");

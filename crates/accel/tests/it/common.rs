@@ -49,26 +49,29 @@ pub fn build(kind: AccelKind, scene: &SceneGeometry) -> Accel {
 }
 
 pub fn closest(accel: &Accel, ray: &Ray) -> Option<Hit> {
-    accel.closest_hit(ray, None, 0, &mut Counters::default())
+    accel.closest_hit(ray, Query::ALL, 0, &mut Counters::default())
 }
 
 /// All of a hit, to the bit.
-pub fn bits(hit: Option<Hit>) -> Option<[u32; 6]> {
-    hit.map(|h| [h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.instance, h.geometry, h.primitive])
+pub fn bits(hit: Option<Hit>) -> Option<([u32; 3], PrimitiveId)> {
+    hit.map(|h| ([h.t, h.u, h.v].map(f32::to_bits), h.id()))
 }
 
-/// The tree answers as brute force does, to the bit. Returns how many rays hit.
+/// Every structure answers as brute force does, to the bit. Returns how many rays hit.
 pub fn assert_agreement(scene: &SceneGeometry, rays: &[Ray]) -> usize {
-    let (brute, tree) = (build(AccelKind::BruteForce, scene), build(AccelKind::Bvh2, scene));
-    let filters: [Option<&dyn HitFilter>; 2] = [None, Some(&Coin)];
+    let brute = build(AccelKind::BruteForce, scene);
+    let others = AccelKind::ALL.map(|(kind, _)| build(kind, scene));
+    let queries = [Query::ALL, Query::filtered(&Coin)];
     let mut found = 0;
     for (i, ray) in rays.iter().enumerate() {
-        for filter in filters {
+        for query in queries {
             let c = &mut Counters::default();
-            let (expected, got) = (brute.closest_hit(ray, filter, i, c), tree.closest_hit(ray, filter, i, c));
-            assert_eq!(bits(got), bits(expected), "\n{ray:?}\n tree  {got:?}\n brute {expected:?}");
-            assert_eq!(tree.any_hit(ray, filter, i, c), expected.is_some(), "any hit of {ray:?}");
-            assert_eq!(brute.any_hit(ray, filter, i, c), expected.is_some());
+            let expected = brute.closest_hit(ray, query, i, c);
+            for other in &others {
+                let (kind, got) = (other.kind().name(), other.closest_hit(ray, query, i, c));
+                assert_eq!(bits(got), bits(expected), "\n{ray:?}\n {kind}  {got:?}\n brute {expected:?}");
+                assert_eq!(other.any_hit(ray, query, i, c), expected.is_some(), "{kind}: any hit of {ray:?}");
+            }
             found += usize::from(expected.is_some());
         }
     }
@@ -80,7 +83,8 @@ pub struct Coin;
 
 impl HitFilter for Coin {
     fn accept(&self, ray_index: usize, _: &Ray, h: &Hit) -> bool {
-        let ids = combine(combine(h.instance.into(), h.geometry.into()), h.primitive.into());
+        let place = h.instance.iter().fold(0, |k, i| combine(k, i.into()));
+        let ids = combine(combine(place, h.geometry.into()), h.primitive.into());
         combine(combine(ids, h.t.to_bits().into()), ray_index as u64) & 1 == 0
     }
 }

@@ -18,7 +18,10 @@ fn each_fault_is_named_with_its_place() {
     assert_eq!(error(world(vec![bad_vertex])), "vertex 2 of geometry 0 in the world is not a finite number");
 
     let lost = Shape::Triangles { positions: Arc::new(vec![Vec3::ZERO; 3]), indices: Arc::new(vec![[0, 1, 3]]) };
-    let scene = SceneGeometry { aggregates: vec![vec![], vec![geometry(lost)]], ..SceneGeometry::default() };
+    let scene = SceneGeometry {
+        aggregates: vec![Aggregate::default(), vec![geometry(lost)].into()],
+        ..SceneGeometry::default()
+    };
     assert_eq!(error(scene), "triangle 0 of geometry 0 in aggregate 1 uses vertex 3, but there are 3");
 
     for radius in [-1.0, f32::INFINITY] {
@@ -29,8 +32,8 @@ fn each_fault_is_named_with_its_place() {
     assert!(error(world(vec![Shape::User(Arc::new(boxes))])).starts_with("user shape 0"));
 
     let place = |aggregate, m: DAffine3| SceneGeometry {
-        aggregates: vec![vec![]],
-        instances: vec![Instance { aggregate, world_from_object: AnimatedTransform::still(m), mask: 1 }],
+        aggregates: vec![Aggregate::default()],
+        instances: vec![Instance { aggregate, outer_from_object: AnimatedTransform::still(m), mask: 1 }],
         ..SceneGeometry::default()
     };
     assert_eq!(error(place(3, DAffine3::IDENTITY)), "instance 0 places aggregate 3, but there are 1");

@@ -4,6 +4,7 @@ mod agreement;
 mod common;
 mod faults;
 mod meshes;
+mod nested;
 mod proptests;
 mod semantics;
 mod surfaces;

@@ -6,8 +6,6 @@ use kirkas_accel::*;
 use kirkas_geometry::{AnimatedTransform, Bounds3, DAffine3, DVec3, Ray, Vec3};
 use std::sync::Arc;
 
-const KINDS: [AccelKind; 2] = [AccelKind::BruteForce, AccelKind::Bvh2];
-
 fn square(z: f32) -> Shape {
     let p = |x: f32, y: f32| Vec3::new(x, y, z);
     triangles(&[[p(-1.0, -1.0), p(3.0, -1.0), p(-1.0, 3.0)]])
@@ -23,7 +21,7 @@ fn down(z: f32) -> Ray {
 
 #[test]
 fn the_interval_is_open_at_both_ends() {
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let flat = build(kind, &world(vec![square(0.0)]));
         let round = build(kind, &world(vec![unit_ball()]));
         let boxed = Boxes(vec![Bounds3::from_corners(Vec3::splat(-1.0), Vec3::splat(1.0))]);
@@ -47,17 +45,17 @@ fn the_interval_is_open_at_both_ends() {
 fn barycentrics_weigh_vertices_1_and_2() {
     let accel = build(AccelKind::Bvh2, &world(vec![square(0.0)]));
     let hit = closest(&accel, &Ray::new(Vec3::new(1.0, 0.0, 5.0), -Vec3::Z)).unwrap();
-    assert_eq!((hit.u, hit.v, hit.instance), (0.5, 0.25, NO_INSTANCE));
+    assert_eq!((hit.u, hit.v, hit.instance), (0.5, 0.25, InstancePath::WORLD));
 }
 
 #[test]
 fn masks_hide_geometry_and_instances() {
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let mut scene = world(vec![square(0.0), square(-1.0)]);
         scene.world[0].mask = 1;
-        scene.aggregates = vec![vec![Geometry { mask: 6, ..geometry(square(1.0)) }]];
-        let world_from_object = AnimatedTransform::still(DAffine3::IDENTITY);
-        scene.instances = vec![Instance { aggregate: 0, world_from_object, mask: 4 }];
+        scene.aggregates = vec![vec![Geometry { mask: 6, ..geometry(square(1.0)) }].into()];
+        let outer_from_object = AnimatedTransform::still(DAffine3::IDENTITY);
+        scene.instances = vec![Instance { aggregate: 0, outer_from_object, mask: 4 }];
         let accel = build(kind, &scene);
         let t = |mask| closest(&accel, &Ray { mask, ..down(2.0) }).map(|h| h.t);
         assert_eq!((t(u32::MAX), t(1), t(2), t(4), t(0)), (Some(1.0), Some(2.0), Some(3.0), Some(1.0), None));
@@ -73,13 +71,13 @@ impl HitFilter for OnlyBeyond {
 
 #[test]
 fn filters_are_asked_for_what_is_not_opaque_only_and_see_every_crossing() {
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let mut scene = world(vec![unit_ball(), square(-5.0)]);
         let closest = |scene: &SceneGeometry, beyond: f32| {
             let accel = build(kind, scene);
             let (ray, filter, c) = (down(3.0), OnlyBeyond(beyond), &mut Counters::default());
-            let hit = accel.closest_hit(&ray, Some(&filter), 0, c);
-            assert_eq!(accel.any_hit(&ray, Some(&filter), 0, c), hit.is_some());
+            let hit = accel.closest_hit(&ray, Query::filtered(&filter), 0, c);
+            assert_eq!(accel.any_hit(&ray, Query::filtered(&filter), 0, c), hit.is_some());
             hit.map(|h| h.t)
         };
         assert_eq!(closest(&scene, 9.0), Some(2.0), "opaque: not asked");
@@ -94,18 +92,18 @@ fn filters_are_asked_for_what_is_not_opaque_only_and_see_every_crossing() {
 
 #[test]
 fn ties_go_to_the_lowest_ids() {
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let twice = |s: Shape| vec![s.clone(), s];
         let mut scene = world(twice(triangles(&[[Vec3::ZERO, Vec3::X, Vec3::Y]; 20])));
         let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
         let hit = closest(&build(kind, &scene), &ray).unwrap();
-        assert_eq!((hit.instance, hit.geometry, hit.primitive), (NO_INSTANCE, 0, 0));
-        scene.aggregates = vec![scene.world.clone()];
+        assert_eq!((hit.instance.outermost(), hit.geometry, hit.primitive), (NO_INSTANCE, 0, 0));
+        scene.aggregates = vec![scene.world.clone().into()];
         let place = |z| AnimatedTransform::still(DAffine3::from_translation(DVec3::new(0.0, 0.0, z)));
         scene.instances =
-            [-1.0, 0.0, 0.0].map(|z| Instance { aggregate: 0, world_from_object: place(z), mask: u32::MAX }).into();
+            [-1.0, 0.0, 0.0].map(|z| Instance { aggregate: 0, outer_from_object: place(z), mask: u32::MAX }).into();
         let hit = closest(&build(kind, &scene), &ray).unwrap();
-        assert_eq!((hit.instance, hit.geometry, hit.primitive), (1, 0, 0));
+        assert_eq!((hit.instance.outermost(), hit.geometry, hit.primitive), (1, 0, 0));
     }
 }
 
@@ -117,15 +115,15 @@ fn a_batch_answers_as_single_rays_do() {
     scene.world[0].opaque = false;
     let r = &mut Random::new(5);
     let rays: Vec<Ray> = (0..5000).map(|_| Ray::new(r.cube() * 2.0, r.cube())).collect();
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let accel = build(kind, &scene);
         let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
         let (mut batch, mut single) = (Counters::default(), Counters::default());
-        accel.closest_hits(&rays, Some(&Coin), &mut hits, &mut batch);
-        accel.any_hits(&rays, Some(&Coin), &mut occluded, &mut batch);
+        accel.closest_hits(&rays, Query::filtered(&Coin), &mut hits, &mut batch);
+        accel.any_hits(&rays, Query::filtered(&Coin), &mut occluded, &mut batch);
         for (i, ray) in rays.iter().enumerate() {
-            assert_eq!(bits(hits[i]), bits(accel.closest_hit(ray, Some(&Coin), i, &mut single)));
-            assert_eq!(occluded[i], accel.any_hit(ray, Some(&Coin), i, &mut single));
+            assert_eq!(bits(hits[i]), bits(accel.closest_hit(ray, Query::filtered(&Coin), i, &mut single)));
+            assert_eq!(occluded[i], accel.any_hit(ray, Query::filtered(&Coin), i, &mut single));
         }
         assert_eq!(batch.rays, single.rays);
         assert_eq!(batch.rays, 2 * rays.len() as u64);
@@ -149,19 +147,20 @@ fn the_tree_does_not_depend_on_the_executor() {
     for _ in 0..20_000 {
         let ray = Ray::new(r.cube() * 2.0, r.cube());
         let (mut a, mut b) = (Counters::default(), Counters::default());
-        let (x, y) = (serial.closest_hit(&ray, None, 0, &mut a), threaded.closest_hit(&ray, None, 0, &mut b));
+        let (x, y) =
+            (serial.closest_hit(&ray, Query::ALL, 0, &mut a), threaded.closest_hit(&ray, Query::ALL, 0, &mut b));
         assert_eq!((bits(x), a), (bits(y), b));
     }
 }
 
 #[test]
 fn moving_instances_stand_where_their_time_says() {
-    for kind in KINDS {
+    for (kind, _) in AccelKind::ALL {
         let mut scene = world(vec![]);
         let at = |x| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
-        scene.aggregates = vec![vec![geometry(unit_ball())]];
-        let world_from_object = AnimatedTransform::from_keys(&[(0.0, at(0.0)), (2.0, at(20.0))]).unwrap();
-        scene.instances = vec![Instance { aggregate: 0, world_from_object, mask: u32::MAX }];
+        scene.aggregates = vec![vec![geometry(unit_ball())].into()];
+        let outer_from_object = AnimatedTransform::from_keys(&[(0.0, at(0.0)), (2.0, at(20.0))]).unwrap();
+        scene.instances = vec![Instance { aggregate: 0, outer_from_object, mask: u32::MAX }];
         scene.shutter = (0.0, 1.0);
         let accel = build(kind, &scene);
         let seen = |x: f32, time| {
@@ -190,10 +189,10 @@ fn unusable_rays_hit_nothing() {
 
 #[test]
 fn an_empty_scene_is_no_special_case() {
-    for kind in KINDS {
-        let mut scene = SceneGeometry { aggregates: vec![vec![]], ..world(vec![triangles(&[])]) };
-        let world_from_object = AnimatedTransform::still(DAffine3::IDENTITY);
-        scene.instances = vec![Instance { aggregate: 0, world_from_object, mask: u32::MAX }];
+    for (kind, _) in AccelKind::ALL {
+        let mut scene = SceneGeometry { aggregates: vec![Aggregate::default()], ..world(vec![triangles(&[])]) };
+        let outer_from_object = AnimatedTransform::still(DAffine3::IDENTITY);
+        scene.instances = vec![Instance { aggregate: 0, outer_from_object, mask: u32::MAX }];
         let accel = build(kind, &scene);
         assert_eq!(closest(&accel, &down(2.0)), None);
         assert!(accel.bounds().is_empty());

@@ -1,6 +1,6 @@
 //! The shapes under test: at least one case of every listed shape, the places to put them, and rays to send at them.
 
-use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, HitFilter, SceneGeometry, Serial};
+use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, HitFilter, Query, SceneGeometry, Serial};
 use kirkas_geometry::hash::mix64;
 use kirkas_geometry::transform::rotation;
 use kirkas_geometry::{DAffine3, DMat3, DVec3, Ray, Vec2, Vec3};
@@ -214,13 +214,13 @@ impl Target {
     }
 
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        self.accel.closest_hit(ray, None, 0, &mut Counters::default())
+        self.accel.closest_hit(ray, Query::ALL, 0, &mut Counters::default())
     }
 
     /// Every crossing, nearest first.
     pub fn all(&self, ray: &Ray) -> Vec<Hit> {
         let found = Refuse(Mutex::default());
-        self.accel.closest_hit(ray, Some(&found), 0, &mut Counters::default());
+        self.accel.closest_hit(ray, Query::filtered(&found), 0, &mut Counters::default());
         let mut hits = found.0.into_inner().unwrap();
         hits.sort_by(|a, b| a.t.total_cmp(&b.t));
         hits
