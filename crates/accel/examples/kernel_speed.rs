@@ -14,8 +14,10 @@ use std::time::Instant;
 const SIDE: usize = 1024;
 
 fn main() {
-    report("displaced sphere", displaced_sphere(708));
-    report("sphereflake", sphereflake(5));
+    let kind =
+        std::env::args().nth(1).map_or(AccelKind::Bvh8, |name| AccelKind::parse(&name).expect("a structure's name"));
+    report(kind, "displaced sphere", displaced_sphere(708));
+    report(kind, "sphereflake", sphereflake(5));
 }
 
 /// Seconds this thread has computed (so that a busy machine distorts little), or of the clock where that is not known.
@@ -26,7 +28,7 @@ fn seconds() -> f64 {
     nanoseconds.map_or_else(|| START.get_or_init(Instant::now).elapsed().as_secs_f64(), |n| n * 1e-9)
 }
 
-fn report(name: &str, shape: Shape) {
+fn report(kind: AccelKind, name: &str, shape: Shape) {
     let world = vec![Geometry { shape, opaque: true, mask: u32::MAX }];
     let scene = SceneGeometry { world, ..SceneGeometry::default() };
     let mut best = f64::INFINITY;
@@ -34,7 +36,7 @@ fn report(name: &str, shape: Shape) {
     for _ in 0..3 {
         drop(accel.take());
         let start = seconds();
-        accel = Some(Accel::build(AccelKind::Bvh2, scene.clone(), &Serial).expect("a sound scene"));
+        accel = Some(Accel::build(kind, scene.clone(), &Serial).expect("a sound scene"));
         best = best.min(seconds() - start);
     }
     let accel = accel.expect("built");
@@ -61,6 +63,11 @@ fn trace(name: &str, accel: &Accel, rays: &[Ray]) -> Vec<Option<Hit>> {
     }
     let found = hits.iter().flatten().count();
     line(name, best, &counters, found);
+    let start = seconds();
+    for (i, (ray, hit)) in rays.iter().zip(&mut hits).enumerate() {
+        *hit = accel.closest_hit(ray, Query::ALL, i, &mut counters);
+    }
+    line("  one by one", seconds() - start, &Counters { rays: counters.rays / 2, ..counters }, found);
     hits
 }
 

@@ -6,8 +6,9 @@ use crate::path::InstancePath;
 use crate::prepared_ray::PreparedRay;
 use crate::query::Query;
 use crate::scene_geometry::{Geometry, Instance, SceneGeometry};
-use crate::search::{Level, Search};
+use crate::search::{Enter, Level, Search};
 use crate::structure::{Measures, Structure};
+use crate::wide::Batch;
 use crate::{AccelError, AccelKind, Executor, check, record};
 use kirkas_geometry::{Bounds3, Ray};
 
@@ -69,21 +70,28 @@ impl Accel {
 
     /// The nearest hit. `ray_index` is handed to the query's filter, and finds what this ray excludes.
     pub fn closest_hit(&self, ray: &Ray, query: Query, ray_index: usize, counters: &mut Counters) -> Option<Hit> {
-        let mut search = Search::<false>::new(ray, ray_index, query, counters);
+        let mut search = Search::<false>::new(ray, ray_index, query);
         self.search(ray, &mut search);
+        *counters += search.counters;
         search.best
     }
 
     /// True when anything is hit. `ray_index` is handed to the query's filter, and finds what this ray excludes.
     pub fn any_hit(&self, ray: &Ray, query: Query, ray_index: usize, counters: &mut Counters) -> bool {
-        let mut search = Search::<true>::new(ray, ray_index, query, counters);
+        let mut search = Search::<true>::new(ray, ray_index, query);
         self.search(ray, &mut search);
+        *counters += search.counters;
         search.best.is_some()
     }
 
     /// The nearest hit of each ray, as [`Accel::closest_hit`] gives it. The slices must be of one length.
     pub fn closest_hits(&self, rays: &[Ray], query: Query, hits: &mut [Option<Hit>], counters: &mut Counters) {
         assert_eq!(rays.len(), hits.len(), "as many answers as rays");
+        if let Structure::Bvh8(tree) = &self.world.structure {
+            let batch = Batch { rays, query, level: self.world_level() };
+            let enter: Enter<false> = &|ray, search, index| self.search_instance(index, ray, search);
+            return tree.search_batch(&batch, enter, counters, |i, hit| hits[i] = hit);
+        }
         for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
             *hit = self.closest_hit(ray, query, i, counters);
         }
@@ -92,6 +100,11 @@ impl Accel {
     /// Whether each ray hits anything, as [`Accel::any_hit`] tells. The slices must be of one length.
     pub fn any_hits(&self, rays: &[Ray], query: Query, occluded: &mut [bool], counters: &mut Counters) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");
+        if let Structure::Bvh8(tree) = &self.world.structure {
+            let batch = Batch { rays, query, level: self.world_level() };
+            let enter: Enter<true> = &|ray, search, index| self.search_instance(index, ray, search);
+            return tree.search_batch(&batch, enter, counters, |i, hit| occluded[i] = hit.is_some());
+        }
         for (i, (ray, answer)) in rays.iter().zip(occluded).enumerate() {
             *answer = self.any_hit(ray, query, i, counters);
         }
@@ -143,11 +156,14 @@ impl Accel {
 
     fn search<const ANY: bool>(&self, ray: &Ray, search: &mut Search<ANY>) {
         let Some(ray) = PreparedRay::new(ray) else { return };
-        let instances = self.world.instances.len() as u32;
-        let level = Level { geometries: &self.scene.world, instances, instance: InstancePath::WORLD };
         self.world
             .structure
-            .search(level, &ray, search, &mut |search, index| self.search_instance(index, &ray, search));
+            .search(self.world_level(), &ray, search, &|ray, search, index| self.search_instance(index, ray, search));
+    }
+
+    fn world_level(&self) -> Level<'_> {
+        let instances = self.world.instances.len() as u32;
+        Level { geometries: &self.scene.world, instances, instance: InstancePath::WORLD }
     }
 
     /// Search an instance of the world.
@@ -162,7 +178,7 @@ impl Accel {
         if built.instances.is_empty() {
             let level =
                 Level { geometries: &self.scene.aggregates[placed.aggregate].geometries, instances: 0, instance };
-            built.structure.search(level, &ray, search, &mut |_, _| {});
+            built.structure.search(level, &ray, search, &|_, _, _| {});
         } else {
             let world_from_object = placed.place(&self.scene.instances[index as usize], search.ray.time);
             self.search_aggregate(placed.aggregate, instance, &Entered { ray, world_from_object }, search);
@@ -179,7 +195,7 @@ impl Accel {
     ) {
         let (built, held) = (&self.aggregates[aggregate], &self.scene.aggregates[aggregate]);
         let level = Level { geometries: &held.geometries, instances: built.instances.len() as u32, instance };
-        built.structure.search(level, &entered.ray, search, &mut |search, index| {
+        built.structure.search(level, &entered.ray, search, &|_, search, index| {
             let placed = &built.instances[index as usize];
             if search.is_done() {
                 return;

@@ -2,15 +2,10 @@
 
 use crate::prepared_ray::PreparedRay;
 use crate::primitive;
-use crate::search::{Level, Search};
+use crate::search::{Enter, Level, Search};
 
 /// Look at each primitive of a level and enter each of its instances.
-pub(crate) fn search<const ANY: bool>(
-    level: Level,
-    ray: &PreparedRay,
-    search: &mut Search<ANY>,
-    enter: &mut dyn FnMut(&mut Search<ANY>, u32),
-) {
+pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &mut Search<ANY>, enter: Enter<ANY>) {
     for (g, geometry) in level.geometries.iter().enumerate() {
         for p in 0..geometry.shape.len() as u32 {
             if search.is_done() {
@@ -21,6 +16,6 @@ pub(crate) fn search<const ANY: bool>(
         }
     }
     for instance in 0..level.instances {
-        enter(search, instance);
+        enter(ray, search, instance);
     }
 }

@@ -6,15 +6,18 @@ pub enum AccelKind {
     /// Every ray against every primitive: the test of all others, and right for a handful of primitives.
     BruteForce,
     /// A binary tree of boxes, split by the binned surface-area heuristic.
-    #[default]
     Bvh2,
+    /// A tree of boxes, eight children to a node and eight triangles to a leaf.
+    #[default]
+    Bvh8,
 }
 
 impl AccelKind {
     /// Every kind with its name, in the order of the manual.
-    pub const ALL: [(AccelKind, &str); 2] = [(AccelKind::BruteForce, "brute_force"), (AccelKind::Bvh2, "bvh2")];
+    pub const ALL: [(AccelKind, &str); 3] =
+        [(AccelKind::BruteForce, "brute_force"), (AccelKind::Bvh2, "bvh2"), (AccelKind::Bvh8, "bvh8")];
     /// Every name, in the same order.
-    pub const NAMES: [&str; 2] = ["brute_force", "bvh2"];
+    pub const NAMES: [&str; 3] = ["brute_force", "bvh2", "bvh8"];
 
     /// The kind of this name.
     pub fn parse(name: &str) -> Option<Self> {
@@ -26,6 +29,7 @@ impl AccelKind {
         match self {
             AccelKind::BruteForce => "brute_force",
             AccelKind::Bvh2 => "bvh2",
+            AccelKind::Bvh8 => "bvh8",
         }
     }
 }

@@ -44,6 +44,7 @@ mod search;
 pub mod sphere;
 mod structure;
 pub mod triangle;
+mod wide;
 
 pub use accel::{Accel, Statistics};
 pub use error::AccelError;

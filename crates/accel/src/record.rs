@@ -4,7 +4,7 @@ use crate::build::reference::{MAX_ID, Reference};
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::{Geometry, Shape, Sphere};
-use crate::search::{Level, Search};
+use crate::search::{Enter, Level, Search};
 use crate::triangle::Corners;
 use crate::{primitive, sphere, triangle};
 use kirkas_geometry::{Bounds3, Vec3};
@@ -84,13 +84,7 @@ impl Record {
 
     /// Test it; `enter` searches an instance.
     #[inline(always)]
-    pub fn test<const ANY: bool>(
-        &self,
-        level: Level,
-        ray: &PreparedRay,
-        search: &mut Search<ANY>,
-        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
-    ) {
+    pub fn test<const ANY: bool>(&self, level: Level, ray: &PreparedRay, search: &mut Search<ANY>, enter: Enter<ANY>) {
         let (geometry, index) = (self.geometry, self.primitive);
         match self.kind {
             RecordKind::Triangle => {
@@ -110,7 +104,7 @@ impl Record {
                     primitive::intersect_user(&**user, index, ray, &mut offer);
                 }
             }
-            RecordKind::Instance => enter(search, index),
+            RecordKind::Instance => enter(ray, search, index),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::hit::{Counters, Hit};
 use crate::path::InstancePath;
+use crate::prepared_ray::PreparedRay;
 use crate::query::Query;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Ray;
@@ -16,21 +17,25 @@ pub(crate) struct Level<'a> {
     pub instance: InstancePath,
 }
 
+/// Searches the instance of this index with the ray of the level that holds it.
+pub(crate) type Enter<'e, const ANY: bool> = &'e dyn Fn(&PreparedRay, &mut Search<'_, ANY>, u32);
+
 /// One ray's search: for the closest hit, or (`ANY`) for any.
+#[derive(Clone, Copy)]
 pub(crate) struct Search<'a, const ANY: bool> {
     /// The ray in world space, for the filter and for instances.
     pub ray: &'a Ray,
     pub ray_index: usize,
     pub query: Query<'a>,
-    pub counters: &'a mut Counters,
+    pub counters: Counters,
     pub best: Option<Hit>,
     /// Boxes that are entered after this hold nothing better. Equal `t` may still win by its ids.
     pub limit: f32,
 }
 
 impl<'a, const ANY: bool> Search<'a, ANY> {
-    pub fn new(ray: &'a Ray, ray_index: usize, query: Query<'a>, counters: &'a mut Counters) -> Self {
-        counters.rays += 1;
+    pub fn new(ray: &'a Ray, ray_index: usize, query: Query<'a>) -> Self {
+        let counters = Counters { rays: 1, ..Counters::default() };
         Search { ray, ray_index, query, counters, best: None, limit: ray.t_max }
     }
 

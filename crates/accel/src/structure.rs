@@ -3,8 +3,8 @@
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::Geometry;
-use crate::search::{Level, Search};
-use crate::{AccelKind, Executor, brute_force, bvh2};
+use crate::search::{Enter, Level, Search};
+use crate::{AccelKind, Executor, brute_force, bvh2, wide};
 
 /// A structure over one level.
 #[derive(Default)]
@@ -12,6 +12,7 @@ pub(crate) enum Structure {
     #[default]
     BruteForce,
     Bvh2(bvh2::Tree),
+    Bvh8(wide::Tree),
 }
 
 /// What a structure looks like.
@@ -38,6 +39,7 @@ impl Structure {
         match kind {
             AccelKind::BruteForce => Structure::BruteForce,
             AccelKind::Bvh2 => Structure::Bvh2(bvh2::Tree::build(geometries, instances, executor)),
+            AccelKind::Bvh8 => Structure::Bvh8(wide::Tree::build(geometries, instances, executor)),
         }
     }
 
@@ -48,11 +50,12 @@ impl Structure {
         level: Level,
         ray: &PreparedRay,
         search: &mut Search<ANY>,
-        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
+        enter: Enter<ANY>,
     ) {
         match self {
             Structure::BruteForce => brute_force::search(level, ray, search, enter),
             Structure::Bvh2(tree) => tree.search(level, ray, search, enter),
+            Structure::Bvh8(tree) => tree.search(level, ray, search, enter),
         }
     }
 
@@ -63,6 +66,9 @@ impl Structure {
             Structure::Bvh2(t) => {
                 Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
             }
+            Structure::Bvh8(t) => {
+                Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
+            }
         }
     }
 
@@ -71,6 +77,7 @@ impl Structure {
         match self {
             Structure::BruteForce => Ok(()),
             Structure::Bvh2(tree) => tree.validate(geometries, instances),
+            Structure::Bvh8(tree) => tree.validate(geometries, instances),
         }
     }
 }

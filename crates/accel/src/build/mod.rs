@@ -2,7 +2,6 @@
 
 pub(crate) mod binary;
 pub(crate) mod binned_sah;
-#[allow(dead_code)]
 pub(crate) mod collapse;
 pub(crate) mod reference;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::Tree;
 use super::node::NodeRay;
 use crate::build::binary::{Child, MAX_DEPTH};
 use crate::prepared_ray::PreparedRay;
-use crate::search::{Level, Search};
+use crate::search::{Enter, Level, Search};
 
 impl Tree {
     /// Search all that the tree holds; `enter` searches an instance.
@@ -13,7 +13,7 @@ impl Tree {
         level: Level,
         ray: &PreparedRay,
         search: &mut Search<ANY>,
-        enter: &mut dyn FnMut(&mut Search<ANY>, u32),
+        enter: Enter<ANY>,
     ) {
         for record in &self.unbounded {
             record.test(level, ray, search, enter);

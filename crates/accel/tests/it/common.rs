@@ -75,6 +75,20 @@ pub fn assert_agreement(scene: &SceneGeometry, rays: &[Ray]) -> usize {
             found += usize::from(expected.is_some());
         }
     }
+    let c = &mut Counters::default();
+    for query in queries {
+        let one: Vec<_> = rays.iter().enumerate().map(|(i, ray)| brute.closest_hit(ray, query, i, c)).collect();
+        for other in &others {
+            let kind = other.kind().name();
+            let (mut hits, mut blocked) = (vec![None; rays.len()], vec![false; rays.len()]);
+            other.closest_hits(rays, query, &mut hits, c);
+            other.any_hits(rays, query, &mut blocked, c);
+            for (i, expected) in one.iter().enumerate() {
+                assert_eq!(bits(hits[i]), bits(*expected), "a batch in {kind}: {:?}", rays[i]);
+                assert_eq!(blocked[i], expected.is_some(), "a batch in {kind}: {:?}", rays[i]);
+            }
+        }
+    }
     found
 }
 

@@ -1,0 +1,138 @@
+//! The arithmetic of a step in AVX2: operation for operation that of [`Portable`](super::backend::Portable).
+
+use super::backend::{Backend, Keys};
+use super::node::{Block, Node};
+use super::walker::RayLanes;
+use core::arch::x86_64::*;
+use kirkas_geometry::bounds::FAR_PAD;
+
+/// Code for CPUs with AVX2.
+pub(super) struct Avx2;
+
+impl Backend for Avx2 {
+    #[inline(always)]
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
+        // SAFETY: the caller promises AVX2 and a valid node.
+        unsafe { boxes::<ANY>(node, ray, limit) }
+    }
+
+    #[inline(always)]
+    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
+        // SAFETY: the caller promises AVX2 and a valid block.
+        unsafe { edges(block, ray) }
+    }
+
+    #[inline(always)]
+    unsafe fn least(keys: &Keys) -> (u16, usize) {
+        // SAFETY: the caller promises AVX2.
+        unsafe { least(keys) }
+    }
+
+    #[inline(always)]
+    unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
+        // SAFETY: the caller promises AVX2.
+        unsafe { without(keys, place) }
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
+    let planes = node.cast::<u8>();
+    // SAFETY: `first_plane` is the byte offset of one of the node's 6 rows of planes.
+    let slab = |k: usize| unsafe {
+        let (o, i) = (_mm256_set1_ps(ray.origin[k]), _mm256_set1_ps(ray.inverse[k]));
+        let enter = _mm256_load_ps(planes.add(ray.first_plane[k] as usize).cast());
+        let leave = _mm256_load_ps(planes.add(ray.first_plane[k] as usize ^ 32).cast());
+        (_mm256_mul_ps(_mm256_sub_ps(enter, o), i), _mm256_mul_ps(_mm256_sub_ps(leave, o), i))
+    };
+    let (x, y, z) = (slab(0), slab(1), slab(2));
+    // NaN, a ray within a face, is always the first operand, and so loses.
+    let (t_min, endless) = (_mm256_set1_ps(ray.t_min), _mm256_set1_ps(f32::INFINITY));
+    let near = _mm256_max_ps(_mm256_max_ps(x.0, t_min), _mm256_max_ps(y.0, _mm256_max_ps(z.0, t_min)));
+    let far = _mm256_min_ps(_mm256_min_ps(x.1, endless), _mm256_min_ps(y.1, _mm256_min_ps(z.1, endless)));
+    let after = _mm256_mul_ps(far, _mm256_set1_ps(FAR_PAD));
+    let before = _mm256_mul_ps(far, _mm256_set1_ps(2.0 - FAR_PAD));
+    let far = _mm256_min_ps(_mm256_set1_ps(limit), _mm256_max_ps(after, before));
+    let missed = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far));
+    let missed = _mm256_srli_epi32::<16>(missed);
+    let keys = if ANY {
+        missed
+    } else {
+        let near = _mm256_castps_si256(_mm256_max_ps(near, _mm256_setzero_ps()));
+        _mm256_or_si256(_mm256_srli_epi32::<16>(near), missed)
+    };
+    let mut keys = _mm_packus_epi32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys));
+    if ANY {
+        // SAFETY: the node is valid; `order` is aligned like it, at a multiple of 16 bytes.
+        keys = _mm_or_si128(keys, unsafe { _mm_load_si128((&raw const (*node).order).cast()) });
+    }
+    from_register(keys)
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
+    let corners = block.cast::<u8>();
+    // SAFETY: `axis_row` is the byte offset of one of the first 3 rows of the block, and a corner has 3 rows of 32 bytes.
+    let row =
+        |corner: usize, k: usize| unsafe { _mm256_load_ps(corners.add(96 * corner + ray.axis_row[k] as usize).cast()) };
+    let [ox, oy, oz] = ray.sheared_origin.map(|o| _mm256_set1_ps(o));
+    let [sx, sy] = ray.shear.map(|s| _mm256_set1_ps(s));
+    let sheared = |corner: usize| {
+        let z = _mm256_sub_ps(row(corner, 2), oz);
+        let x = _mm256_sub_ps(_mm256_sub_ps(row(corner, 0), ox), _mm256_mul_ps(sx, z));
+        let y = _mm256_sub_ps(_mm256_sub_ps(row(corner, 1), oy), _mm256_mul_ps(sy, z));
+        (x, y)
+    };
+    let (a, b, c) = (sheared(0), sheared(1), sheared(2));
+    let edge =
+        |p: (__m256, __m256), q: (__m256, __m256)| _mm256_sub_ps(_mm256_mul_ps(p.0, q.1), _mm256_mul_ps(p.1, q.0));
+    let w = [edge(c, b), edge(a, c), edge(b, a)];
+    // NaN is ignored in all but the last place, and there rules nothing out.
+    let lowest = _mm256_min_ps(w[2], _mm256_min_ps(w[1], w[0]));
+    let highest = _mm256_max_ps(w[2], _mm256_max_ps(w[1], w[0]));
+    let zero = _mm256_setzero_ps();
+    let negative = _mm256_cmp_ps::<_CMP_LT_OQ>(lowest, zero);
+    let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(highest, zero);
+    !(_mm256_movemask_ps(_mm256_and_ps(negative, positive)) as u32) & 0xff
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn least(keys: &Keys) -> (u16, usize) {
+    let found = _mm_cvtsi128_si32(_mm_minpos_epu16(to_register(keys))) as u32;
+    (found as u16, (found >> 16) as usize)
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
+    static ONE: [Keys; 8] = {
+        let mut rows = [Keys([0; 8]); 8];
+        let mut i = 0;
+        while i < 8 {
+            rows[i].0[i] = u16::MAX;
+            i += 1;
+        }
+        rows
+    };
+    let rest = _mm_or_si128(to_register(keys), to_register(&ONE[place & 7]));
+    (from_register(rest), _mm_test_all_ones(rest) != 0)
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn to_register(keys: &Keys) -> __m128i {
+    // SAFETY: keys are 16 bytes, aligned to 16.
+    unsafe { _mm_load_si128(keys.0.as_ptr().cast()) }
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn from_register(register: __m128i) -> Keys {
+    let mut keys = Keys::NONE;
+    // SAFETY: keys are 16 bytes, aligned to 16.
+    unsafe { _mm_store_si128(keys.0.as_mut_ptr().cast(), register) };
+    keys
+}

@@ -1,0 +1,121 @@
+//! The arithmetic of a step, once for any CPU. A twin for AVX2 is in `avx2`; both give the same bits.
+
+use super::node::{Block, Node, WIDTH};
+use super::walker::RayLanes;
+use kirkas_geometry::bounds::pad_far;
+
+/// Eight 16-bit keys, the least of which comes next; [`NO_KEY`] for what is not to be visited.
+#[derive(Clone, Copy)]
+#[repr(C, align(16))]
+pub(super) struct Keys(pub [u16; WIDTH]);
+
+/// The key of what is not to be visited.
+pub(super) const NO_KEY: u16 = u16::MAX;
+
+impl Keys {
+    pub const NONE: Keys = Keys([NO_KEY; WIDTH]);
+}
+
+/// The upper half of a distance. Truncation is monotone, so comparing keys never culls what comparing distances would not.
+#[inline(always)]
+pub(super) fn key(distance: f32) -> u16 {
+    let d = if distance > 0.0 { distance } else { 0.0 };
+    (d.to_bits() >> 16) as u16
+}
+
+/// The arithmetic of a step.
+pub(super) trait Backend {
+    /// The box test of all children ([`kirkas_geometry::Bounds3::intersect`]): keys of those that the ray enters before
+    /// `limit`, by entry distance or (`ANY`) by the node's order.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs; `node` is valid.
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys;
+
+    /// The edge test of all triangles: a bit for each of which the edges do not rule a hit out.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs; `block` is valid.
+    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32;
+
+    /// The least key, and the first place where it is.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs.
+    unsafe fn least(keys: &Keys) -> (u16, usize);
+
+    /// The keys without that of one place, and whether none is left.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs.
+    unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool);
+}
+
+/// Code for any CPU.
+pub(super) struct Portable;
+
+impl Backend for Portable {
+    #[inline(always)]
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
+        // SAFETY: the caller promises that the node is valid.
+        let node = unsafe { &*node };
+        let mut near = [ray.t_min; WIDTH];
+        let mut far = [f32::INFINITY; WIDTH];
+        for k in 0..3 {
+            let first = ray.first_plane[k] as usize / 32;
+            let (enter, leave) = (&node.planes[first], &node.planes[first ^ 1]);
+            for c in 0..WIDTH {
+                let e = (enter[c] - ray.origin[k]) * ray.inverse[k];
+                let l = (leave[c] - ray.origin[k]) * ray.inverse[k];
+                near[c] = if e > near[c] { e } else { near[c] };
+                far[c] = if l < far[c] { l } else { far[c] };
+            }
+        }
+        let mut keys = Keys::NONE;
+        for c in 0..WIDTH {
+            let far = pad_far(far[c]);
+            let far = if limit < far { limit } else { far };
+            if near[c] <= far {
+                keys.0[c] = if ANY { node.order[c] } else { key(near[c]) };
+            }
+        }
+        keys
+    }
+
+    #[inline(always)]
+    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
+        // SAFETY: the caller promises that the block is valid.
+        let block = unsafe { &*block };
+        let mut passing = 0;
+        for lane in 0..WIDTH {
+            let sheared = |corner: usize| {
+                let [x, y, z] = ray.axis_row.map(|row| block.corners[3 * corner + row as usize / 32][lane]);
+                let z = z - ray.sheared_origin[2];
+                (x - ray.sheared_origin[0] - ray.shear[0] * z, y - ray.sheared_origin[1] - ray.shear[1] * z)
+            };
+            let (a, b, c) = (sheared(0), sheared(1), sheared(2));
+            let w = [c.0 * b.1 - c.1 * b.0, a.0 * c.1 - a.1 * c.0, b.0 * a.1 - b.1 * a.0];
+            let (negative, positive) = (w.iter().any(|w| *w < 0.0), w.iter().any(|w| *w > 0.0));
+            passing |= u32::from(!(negative && positive)) << lane;
+        }
+        passing
+    }
+
+    #[inline(always)]
+    unsafe fn least(keys: &Keys) -> (u16, usize) {
+        let mut least = (keys.0[0], 0);
+        for (place, &key) in keys.0.iter().enumerate() {
+            if key < least.0 {
+                least = (key, place);
+            }
+        }
+        least
+    }
+
+    #[inline(always)]
+    unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
+        let mut rest = *keys;
+        rest.0[place & (WIDTH - 1)] = NO_KEY;
+        (rest, rest.0.iter().all(|k| *k == NO_KEY))
+    }
+}

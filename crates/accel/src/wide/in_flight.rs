@@ -1,0 +1,168 @@
+//! Many rays in flight. A lone ray waits: for memory, and for the processor to find out where it goes. So about 16 rays are kept
+//! under way in two work lists, "at a node" and "at a leaf"; each round steps every ray of one list once and starts to
+//! load what its next step needs. A ray that is through makes room for the next one at once.
+
+use super::Tree;
+use super::backend::{Backend, Portable};
+use super::node::Place;
+use super::walker::{Ground, Walker};
+use crate::hit::{Counters, Hit};
+use crate::prepared_ray::PreparedRay;
+use crate::query::Query;
+use crate::search::{Enter, Level, Search};
+use core::mem::MaybeUninit;
+use kirkas_geometry::Ray;
+
+/// Rays under way at once.
+const IN_FLIGHT: usize = 16;
+
+/// A batch of rays and what is asked of them.
+pub(crate) struct Batch<'a> {
+    pub rays: &'a [Ray],
+    pub query: Query<'a>,
+    pub level: Level<'a>,
+}
+
+impl Tree {
+    /// Search for each ray; `done` is told the hit of each, in any order.
+    pub fn search_batch<const ANY: bool>(
+        &self,
+        batch: &Batch,
+        enter: Enter<ANY>,
+        counters: &mut Counters,
+        done: impl FnMut(usize, Option<Hit>),
+    ) {
+        #[cfg(target_arch = "x86_64")]
+        if self.has_avx2 {
+            // SAFETY: `has_avx2` is only set where it was detected.
+            return unsafe { fly_avx2::<ANY>(self, batch, enter, counters, done) };
+        }
+        // SAFETY: portable code needs nothing.
+        unsafe { fly::<Portable, ANY>(self, batch, enter, counters, done) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn fly_avx2<const ANY: bool>(
+    tree: &Tree,
+    batch: &Batch,
+    enter: Enter<ANY>,
+    counters: &mut Counters,
+    done: impl FnMut(usize, Option<Hit>),
+) {
+    // SAFETY: AVX2 is enabled here.
+    unsafe { fly::<super::avx2::Avx2, ANY>(tree, batch, enter, counters, done) }
+}
+
+/// Slots whose rays are at a node, and at a leaf.
+struct Lists {
+    slots: [[u8; IN_FLIGHT]; 2],
+    len: [usize; 2],
+}
+
+const AT_NODE: usize = 0;
+const AT_LEAF: usize = 1;
+
+impl Lists {
+    #[inline(always)]
+    fn push(&mut self, place: Place, slot: u8) {
+        let list = usize::from(!place.is_node());
+        let len = self.len[list];
+        self.slots[list][len & (IN_FLIGHT - 1)] = slot;
+        self.len[list] = len + 1;
+    }
+}
+
+/// # Safety
+/// The CPU has what `B` needs.
+#[inline(always)]
+unsafe fn fly<'a, B: Backend, const ANY: bool>(
+    tree: &Tree,
+    batch: &Batch<'a>,
+    enter: Enter<ANY>,
+    counters: &mut Counters,
+    mut done: impl FnMut(usize, Option<Hit>),
+) {
+    let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level };
+    let mut walkers: [MaybeUninit<Walker<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
+    let mut lists = Lists { slots: [[0; IN_FLIGHT]; 2], len: [0; 2] };
+    let mut waiting = 0..batch.rays.len();
+    // Finished or not, a slot is free at first, and again when its ray is through.
+    let mut free: [u8; IN_FLIGHT] = core::array::from_fn(|i| i as u8);
+    let mut free_count = IN_FLIGHT;
+    loop {
+        for &slot in &free[..free_count] {
+            let walker = &mut walkers[slot as usize];
+            for index in waiting.by_ref() {
+                let search = Search::new(&batch.rays[index], index, batch.query);
+                let Some(prepared) = PreparedRay::new(&batch.rays[index]) else {
+                    *counters += search.counters;
+                    done(index, None);
+                    continue;
+                };
+                Walker::start(walker, &prepared, search, &ground, enter);
+                // SAFETY: started above.
+                let walker = unsafe { walker.assume_init_ref() };
+                if walker.place.is_end() {
+                    *counters += walker.search.counters;
+                    done(index, walker.search.best);
+                    continue;
+                }
+                lists.push(walker.place, slot);
+                break;
+            }
+        }
+        let which = usize::from(lists.len[AT_LEAF] > lists.len[AT_NODE]);
+        let count = lists.len[which];
+        if count == 0 {
+            return;
+        }
+        let round = lists.slots[which];
+        lists.len[which] = 0;
+        free_count = 0;
+        for &slot in &round[..count] {
+            // SAFETY: slots in the lists were started, and a list holds rays at places of its type; the caller promises the
+            // CPU.
+            let walker = unsafe { walkers.get_unchecked_mut(slot as usize).assume_init_mut() };
+            unsafe {
+                if which == AT_NODE {
+                    walker.step_node::<B>(&ground);
+                } else {
+                    walker.step_leaf::<B>(&ground, enter);
+                }
+            }
+            prefetch(&ground, walker.place);
+            // Written in any case, kept if the ray is through.
+            let is_end = walker.place.is_end();
+            free[free_count & (IN_FLIGHT - 1)] = slot;
+            free_count += usize::from(is_end);
+            lists.push(walker.place, slot);
+            lists.len[AT_LEAF] -= usize::from(is_end);
+        }
+        for &slot in &free[..free_count] {
+            // SAFETY: started.
+            let search = unsafe { &walkers[slot as usize].assume_init_ref().search };
+            *counters += search.counters;
+            done(search.ray_index, search.best);
+        }
+    }
+}
+
+/// Start to load what the next step needs.
+#[inline(always)]
+fn prefetch(ground: &Ground, place: Place) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: prefetching has no effect on memory, and the address is within the arena or its first line.
+    unsafe {
+        use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let first = ground.lines.add(place.line()).cast::<i8>();
+        _mm_prefetch::<_MM_HINT_T0>(first);
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64));
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(128));
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(192));
+        _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(256));
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (ground, place);
+}

@@ -1,0 +1,73 @@
+//! `bvh8`: a tree of boxes, eight children to a node and eight triangles to a leaf, for processors that test eight at once.
+//!
+//! It is asked in three ways, each its own file: one ray (`single`), a batch with many rays in flight (`in_flight`), and
+//! packets of camera rays (`packet`). The arithmetic is in `backend`, for any processor, and in `avx2`, with the same bits.
+
+mod arena;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod backend;
+mod emit;
+mod in_flight;
+mod node;
+mod numbers;
+mod single;
+mod validate;
+mod walker;
+
+pub(crate) use in_flight::Batch;
+
+use crate::Executor;
+use crate::build::binary::MAX_DEPTH;
+use crate::build::binned_sah;
+use crate::instance::PlacedInstance;
+use crate::record::{Gathered, Record, gather};
+use crate::scene_geometry::Geometry;
+use arena::Line;
+use kirkas_geometry::Bounds3;
+use node::Place;
+use numbers::Numbers;
+
+/// Levels of nodes: no more than the binary tree had.
+const MAX_LEVELS: usize = MAX_DEPTH;
+
+/// A tree over one level: the world with its instances, or one aggregate.
+pub(crate) struct Tree {
+    lines: Vec<Line>,
+    root: Place,
+    numbers: Numbers,
+    /// What no box holds; tested by every ray.
+    unbounded: Vec<Record>,
+    bounds: Bounds3,
+    /// True when a primitive may be in several leaves, in parts.
+    is_split: bool,
+    has_avx2: bool,
+}
+
+impl Tree {
+    /// Build over a level.
+    pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
+        let Gathered { references, unbounded } = gather(geometries, instances);
+        let binary = binned_sah::build(references, executor);
+        let numbers = Numbers::new(geometries);
+        let bounds = binary.references.iter().map(|r| r.bounds()).fold(Bounds3::EMPTY, Bounds3::union);
+        let (lines, root) = emit::emit(&binary, geometries, &numbers, executor);
+        Tree { lines, root, numbers, unbounded, bounds, is_split: false, has_avx2: has_avx2() }
+    }
+
+    /// Answer with the code for any processor, as if this one had no AVX2.
+    pub fn forget_avx2(&mut self) {
+        self.has_avx2 = false;
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.lines) + self.numbers.bytes() + size_of_val(&*self.unbounded)
+    }
+}
+
+fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return std::arch::is_x86_feature_detected!("avx2");
+    #[cfg(not(target_arch = "x86_64"))]
+    return false;
+}

@@ -1,0 +1,154 @@
+//! How the tree lies in memory: one arena of 64-byte lines, in which nodes take 4 lines and leaf blocks 5.
+
+use kirkas_geometry::{Bounds3, Vec3};
+
+/// Children of a node, and triangles of a leaf block.
+pub(super) const WIDTH: usize = 8;
+/// Lines of a [`Node`].
+pub(super) const NODE_LINES: usize = size_of::<Node>() / 64;
+/// Lines of a [`Block`].
+pub(super) const BLOCK_LINES: usize = size_of::<Block>() / 64;
+/// Lines of a [`List`].
+pub(super) const LIST_LINES: usize = size_of::<List>() / 64;
+
+/// An inner node: the boxes of up to 8 children.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Node {
+    /// `[2 * axis + (0 = low, 1 = high)][child]`. An empty slot has an empty box, which no ray enters.
+    pub planes: [[f32; WIDTH]; 6],
+    /// Where the children are.
+    pub children: [Place; WIDTH],
+    /// The order in which a search for any hit looks at the children, most promising first.
+    pub order: [u16; WIDTH],
+    unused: [u32; 4],
+}
+
+/// Up to 8 triangles, as a structure of arrays.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Block {
+    /// `[3 * corner + axis][triangle]`.
+    pub corners: [[f32; WIDTH]; 9],
+    /// Their numbers within the level.
+    pub numbers: [u32; WIDTH],
+}
+
+/// Up to 8 primitives of any type, by number.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct List {
+    /// Numbers within the level.
+    pub numbers: [u32; WIDTH],
+}
+
+/// Where a node or a leaf is: its type and size in the top 4 bits, its first line in the others. 28 bits of lines
+/// address 16 GB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub(super) struct Place(pub u32);
+
+/// Lines that a [`Place`] can address.
+pub(super) const MAX_LINES: usize = 1 << 28;
+const BLOCK: u32 = 1 << 31;
+const LIST: u32 = 1 << 28;
+const END: u32 = 2 << 28;
+const LINE: u32 = (1 << 28) - 1;
+
+impl Place {
+    /// Nowhere: the ray is through.
+    pub const END: Place = Place(END);
+
+    /// An inner node.
+    pub fn node(line: usize) -> Self {
+        debug_assert!(line < MAX_LINES);
+        Place(line as u32)
+    }
+
+    /// A block of `count` triangles.
+    pub fn block(line: usize, count: usize) -> Self {
+        debug_assert!(line < MAX_LINES && (1..=WIDTH).contains(&count));
+        Place(BLOCK | (count as u32 - 1) << 28 | line as u32)
+    }
+
+    /// A list of primitives; how many it holds, it says itself.
+    pub fn list(line: usize) -> Self {
+        debug_assert!(line < MAX_LINES);
+        Place(LIST | line as u32)
+    }
+
+    #[inline(always)]
+    pub fn is_node(self) -> bool {
+        self.0 < LIST
+    }
+
+    #[inline(always)]
+    pub fn is_block(self) -> bool {
+        self.0 & BLOCK != 0
+    }
+
+    #[inline(always)]
+    pub fn is_end(self) -> bool {
+        self.0 == END
+    }
+
+    /// Triangles in the block.
+    #[inline(always)]
+    pub fn count(self) -> usize {
+        (self.0 >> 28 & 7) as usize + 1
+    }
+
+    /// First line.
+    #[inline(always)]
+    pub fn line(self) -> usize {
+        (self.0 & LINE) as usize
+    }
+}
+
+impl Node {
+    /// A node without children.
+    pub const EMPTY: Node = Node {
+        planes: [
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+            [f32::INFINITY; WIDTH],
+            [f32::NEG_INFINITY; WIDTH],
+        ],
+        children: [Place::END; WIDTH],
+        order: [0; WIDTH],
+        unused: [0; 4],
+    };
+
+    /// Put a box into a slot.
+    pub fn set_bounds(&mut self, slot: usize, b: &Bounds3) {
+        for k in 0..3 {
+            self.planes[2 * k][slot] = b.min[k];
+            self.planes[2 * k + 1][slot] = b.max[k];
+        }
+    }
+
+    /// The box in a slot.
+    pub fn bounds(&self, slot: usize) -> Bounds3 {
+        let corner = |side: usize| Vec3::from([0, 1, 2].map(|k| self.planes[2 * k + side][slot]));
+        Bounds3 { min: corner(0), max: corner(1) }
+    }
+}
+
+impl Block {
+    pub const EMPTY: Block = Block { corners: [[0.0; WIDTH]; 9], numbers: [List::NONE; WIDTH] };
+
+    /// The corners of one triangle.
+    #[inline(always)]
+    pub fn triangle(&self, lane: usize) -> [[f32; 3]; 3] {
+        let lane = lane & (WIDTH - 1);
+        [0, 1, 2].map(|c| [0, 1, 2].map(|k| self.corners[3 * c + k][lane]))
+    }
+}
+
+impl List {
+    /// Fills what is not used.
+    pub const NONE: u32 = u32::MAX;
+    pub const EMPTY: List = List { numbers: [List::NONE; WIDTH] };
+}

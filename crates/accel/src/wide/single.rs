@@ -1,0 +1,62 @@
+//! One ray at a time.
+
+use super::Tree;
+use super::backend::{Backend, Portable};
+use super::walker::{Ground, Walker};
+use crate::prepared_ray::PreparedRay;
+use crate::search::{Enter, Level, Search};
+use core::mem::MaybeUninit;
+
+impl Tree {
+    /// Search all that the tree holds; `enter` searches an instance.
+    #[inline]
+    pub fn search<const ANY: bool>(
+        &self,
+        level: Level,
+        ray: &PreparedRay,
+        search: &mut Search<ANY>,
+        enter: Enter<ANY>,
+    ) {
+        let ground = Ground { tree: self, lines: self.lines.as_ptr(), level };
+        #[cfg(target_arch = "x86_64")]
+        if self.has_avx2 {
+            // SAFETY: `has_avx2` is only set where it was detected.
+            return unsafe { walk_avx2(&ground, ray, search, enter) };
+        }
+        // SAFETY: portable code needs nothing.
+        unsafe { walk::<Portable, ANY>(&ground, ray, search, enter) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn walk_avx2<const ANY: bool>(ground: &Ground, ray: &PreparedRay, search: &mut Search<ANY>, enter: Enter<ANY>) {
+    // SAFETY: AVX2 is enabled here.
+    unsafe { walk::<super::avx2::Avx2, ANY>(ground, ray, search, enter) }
+}
+
+/// # Safety
+/// The CPU has what `B` needs.
+#[inline(always)]
+unsafe fn walk<B: Backend, const ANY: bool>(
+    ground: &Ground,
+    ray: &PreparedRay,
+    search: &mut Search<ANY>,
+    enter: Enter<ANY>,
+) {
+    let mut slot = MaybeUninit::uninit();
+    Walker::start(&mut slot, ray, *search, ground, enter);
+    // SAFETY: started above.
+    let walker = unsafe { slot.assume_init_mut() };
+    while !walker.place.is_end() {
+        // SAFETY: the caller promises the CPU; places are tested before they are stepped on.
+        unsafe {
+            if walker.place.is_node() {
+                walker.step_node::<B>(ground);
+            } else {
+                walker.step_leaf::<B>(ground, enter);
+            }
+        }
+    }
+    *search = walker.search;
+}
