@@ -1,6 +1,6 @@
 //! Time beside POV-Ray, in one run: from process start to written image, both on two threads, same samples per pixel.
 
-use crate::sh::{Outcome, build_kirkas, exists, output, root};
+use crate::sh::{self, Outcome, build_kirkas, cargo, exists, output, root};
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -8,8 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// `cargo xtask bench [--quick] [--json FILE]`
+/// `cargo xtask bench [kernel] [--quick] [--json FILE]`
 pub fn run(args: &[String]) -> Outcome {
+    if let Some(("kernel", rest)) = args.split_first().map(|(first, rest)| (first.as_str(), rest)) {
+        return kernel(rest);
+    }
     let quick = args.iter().any(|a| a == "--quick");
     let json = args.iter().position(|a| a == "--json").and_then(|i| args.get(i + 1));
     let has_povray = exists("povray", "--version");
@@ -42,6 +45,12 @@ pub fn run(args: &[String]) -> Outcome {
         fs::write(file, format!("[\n  {}\n]\n", rows.join(",\n  "))).map_err(|e| e.to_string())?;
     }
     Ok(())
+}
+
+/// The ray kernel beside Embree 3; takes the options of `kernel --help`.
+fn kernel(args: &[String]) -> Outcome {
+    let program = ["run", "--release", "--package", "kirkas-bench", "--bin", "kernel", "--"];
+    sh::run(cargo().args(program).args(args))
 }
 
 /// One scene for both.

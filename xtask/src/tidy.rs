@@ -64,7 +64,7 @@ const KINDS: [&str; 6] = [
 pub fn run(_: &[String]) -> Outcome {
     let mut found = Vec::new();
     floors(&mut found);
-    for file in files(&root().join("crates"), "rs") {
+    for file in ["crates", "bench"].iter().flat_map(|dir| files(&root().join(dir), "rs")) {
         check_source(&file, &mut found);
     }
     for kind in KINDS {

@@ -38,6 +38,7 @@ mod path;
 mod prepared_ray;
 mod primitive;
 mod query;
+pub mod ray_sets;
 mod record;
 mod scene_geometry;
 mod search;

@@ -54,7 +54,8 @@ pub fn run(args: &Check) -> Result<Outcome, Problem> {
 fn summary(file: &SceneFile, scene: &Scene) -> String {
     let d: &Description = &file.description;
     let geometry = scene.accel.scene_geometry();
-    let shapes = || geometry.world.iter().chain(geometry.aggregates.iter().flat_map(|a| &a.geometries)).map(|g| &g.shape);
+    let shapes =
+        || geometry.world.iter().chain(geometry.aggregates.iter().flat_map(|a| &a.geometries)).map(|g| &g.shape);
     let triangles: usize = shapes().filter(|s| matches!(s, Shape::Triangles { .. })).map(|s| s.len()).sum();
     let built = scene.accel.statistics();
     let files = file.files.record();
