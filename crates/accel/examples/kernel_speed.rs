@@ -63,11 +63,16 @@ fn trace(name: &str, accel: &Accel, rays: &[Ray]) -> Vec<Option<Hit>> {
     }
     let found = hits.iter().flatten().count();
     line(name, best, &counters, found);
+    counters = Counters::default();
+    let start = seconds();
+    accel.closest_hits_coherent(rays, Query::ALL, &mut hits, &mut counters);
+    line("  in packets", seconds() - start, &counters, found);
+    counters = Counters::default();
     let start = seconds();
     for (i, (ray, hit)) in rays.iter().zip(&mut hits).enumerate() {
         *hit = accel.closest_hit(ray, Query::ALL, i, &mut counters);
     }
-    line("  one by one", seconds() - start, &Counters { rays: counters.rays / 2, ..counters }, found);
+    line("  one by one", seconds() - start, &counters, found);
     hits
 }
 

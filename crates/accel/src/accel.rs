@@ -97,6 +97,18 @@ impl Accel {
         }
     }
 
+    /// [`Accel::closest_hits`] for rays that run close together, such as those of a camera, where neighbours in the slice are
+    /// neighbours in space. The same answers, sooner.
+    pub fn closest_hits_coherent(&self, rays: &[Ray], query: Query, hits: &mut [Option<Hit>], counters: &mut Counters) {
+        assert_eq!(rays.len(), hits.len(), "as many answers as rays");
+        let Structure::Bvh8(tree) = &self.world.structure else {
+            return self.closest_hits(rays, query, hits, counters);
+        };
+        let batch = Batch { rays, query, level: self.world_level() };
+        let enter: Enter<false> = &|ray, search, index| self.search_instance(index, ray, search);
+        tree.search_packets(&batch, enter, counters, |i, hit| hits[i] = hit);
+    }
+
     /// Whether each ray hits anything, as [`Accel::any_hit`] tells. The slices must be of one length.
     pub fn any_hits(&self, rays: &[Ray], query: Query, occluded: &mut [bool], counters: &mut Counters) {
         assert_eq!(rays.len(), occluded.len(), "as many answers as rays");

@@ -11,6 +11,7 @@ use crate::prepared_ray::PreparedRay;
 use crate::query::Query;
 use crate::search::{Enter, Level, Search};
 use core::mem::MaybeUninit;
+use core::ops::Range;
 use kirkas_geometry::Ray;
 
 /// Rays under way at once.
@@ -32,13 +33,25 @@ impl Tree {
         counters: &mut Counters,
         done: impl FnMut(usize, Option<Hit>),
     ) {
+        self.search_slice(batch, 0..batch.rays.len(), enter, counters, done);
+    }
+
+    /// Search for some rays of the batch.
+    pub(super) fn search_slice<const ANY: bool>(
+        &self,
+        batch: &Batch,
+        range: Range<usize>,
+        enter: Enter<ANY>,
+        counters: &mut Counters,
+        done: impl FnMut(usize, Option<Hit>),
+    ) {
         #[cfg(target_arch = "x86_64")]
         if self.has_avx2 {
             // SAFETY: `has_avx2` is only set where it was detected.
-            return unsafe { fly_avx2::<ANY>(self, batch, enter, counters, done) };
+            return unsafe { fly_avx2::<ANY>(self, batch, range, enter, counters, done) };
         }
         // SAFETY: portable code needs nothing.
-        unsafe { fly::<Portable, ANY>(self, batch, enter, counters, done) }
+        unsafe { fly::<Portable, ANY>(self, batch, range, enter, counters, done) }
     }
 }
 
@@ -47,12 +60,13 @@ impl Tree {
 unsafe fn fly_avx2<const ANY: bool>(
     tree: &Tree,
     batch: &Batch,
+    waiting: Range<usize>,
     enter: Enter<ANY>,
     counters: &mut Counters,
     done: impl FnMut(usize, Option<Hit>),
 ) {
     // SAFETY: AVX2 is enabled here.
-    unsafe { fly::<super::avx2::Avx2, ANY>(tree, batch, enter, counters, done) }
+    unsafe { fly::<super::avx2::Avx2, ANY>(tree, batch, waiting, enter, counters, done) }
 }
 
 /// Slots whose rays are at a node, and at a leaf.
@@ -80,6 +94,7 @@ impl Lists {
 unsafe fn fly<'a, B: Backend, const ANY: bool>(
     tree: &Tree,
     batch: &Batch<'a>,
+    mut waiting: Range<usize>,
     enter: Enter<ANY>,
     counters: &mut Counters,
     mut done: impl FnMut(usize, Option<Hit>),
@@ -87,7 +102,6 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level };
     let mut walkers: [MaybeUninit<Walker<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
     let mut lists = Lists { slots: [[0; IN_FLIGHT]; 2], len: [0; 2] };
-    let mut waiting = 0..batch.rays.len();
     // Finished or not, a slot is free at first, and again when its ray is through.
     let mut free: [u8; IN_FLIGHT] = core::array::from_fn(|i| i as u8);
     let mut free_count = IN_FLIGHT;

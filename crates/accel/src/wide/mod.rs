@@ -11,6 +11,7 @@ mod emit;
 mod in_flight;
 mod node;
 mod numbers;
+mod packet;
 mod single;
 mod validate;
 mod walker;

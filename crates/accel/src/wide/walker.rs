@@ -34,7 +34,7 @@ impl RayLanes {
             origin: ray.clipped.origin.to_array(),
             t_min: ray.clipped.t_min,
             inverse,
-            first_plane: [0, 1, 2].map(|k| 64 * k as u32 + 32 * u32::from(inverse[k].is_sign_negative())),
+            first_plane: Walker::<false>::first_plane(ray),
             axis_row: ray.axes.map(|k| 32 * (k as u32).min(2)),
             sheared_origin: ray.sheared_origin,
             shear: ray.shear,
@@ -111,6 +111,19 @@ impl<'a, const ANY: bool> Walker<'a, ANY> {
         }
     }
 
+    /// Byte offsets in a node of the planes that the ray meets first.
+    #[inline(always)]
+    pub fn first_plane(ray: &PreparedRay) -> [u32; 3] {
+        let inverse = ray.inverse.to_array();
+        [0, 1, 2].map(|k| 64 * k as u32 + 32 * u32::from(inverse[k].is_sign_negative()))
+    }
+
+    /// Boxes that are entered after this are culled.
+    #[inline(always)]
+    pub fn limit(&self) -> f32 {
+        self.limit
+    }
+
     /// Take note of what was found.
     #[inline(always)]
     fn lower_limit(&mut self, ground: &Ground) {
@@ -173,11 +186,28 @@ impl<'a, const ANY: bool> Walker<'a, ANY> {
     /// The CPU has what `B` needs; `place` is a leaf of the ground's tree.
     #[inline(always)]
     pub unsafe fn step_leaf<B: Backend>(&mut self, ground: &Ground, enter: Enter<ANY>) {
+        // SAFETY: the caller promises as much.
+        unsafe {
+            self.test_leaf::<B>(ground, self.place, enter);
+            if self.search.is_done() {
+                self.place = Place::END;
+            } else {
+                self.next::<B>(ground);
+            }
+        }
+    }
+
+    /// Test what is in a leaf.
+    ///
+    /// # Safety
+    /// The CPU has what `B` needs; `place` is a leaf of the ground's tree.
+    #[inline(always)]
+    pub unsafe fn test_leaf<B: Backend>(&mut self, ground: &Ground, place: Place, enter: Enter<ANY>) {
         // SAFETY: the tree's places lead to what they say.
         unsafe {
-            if self.place.is_block() {
-                let block: *const Block = arena::get(ground.lines, self.place.line());
-                let count = self.place.count();
+            if place.is_block() {
+                let block: *const Block = arena::get(ground.lines, place.line());
+                let count = place.count();
                 self.search.counters.primitives_tested += count as u64;
                 let mut passing = B::edges(block, &self.lanes) & ((1 << count) - 1);
                 while passing != 0 {
@@ -186,13 +216,8 @@ impl<'a, const ANY: bool> Walker<'a, ANY> {
                     self.meet(&*block, lane, ground);
                 }
             } else {
-                let list: *const List = arena::get(ground.lines, self.place.line());
-                self.step_list(&*list, ground, enter);
-            }
-            if self.search.is_done() {
-                self.place = Place::END;
-            } else {
-                self.next::<B>(ground);
+                let list: *const List = arena::get(ground.lines, place.line());
+                self.test_list(&*list, ground, enter);
             }
         }
     }
@@ -208,7 +233,7 @@ impl<'a, const ANY: bool> Walker<'a, ANY> {
     }
 
     #[inline(never)]
-    fn step_list(&mut self, list: &List, ground: &Ground, enter: Enter<ANY>) {
+    fn test_list(&mut self, list: &List, ground: &Ground, enter: Enter<ANY>) {
         for &number in list.numbers.iter().take_while(|n| **n != List::NONE) {
             let (geometry, index) = ground.tree.numbers.ids(number);
             if geometry == IS_INSTANCE {

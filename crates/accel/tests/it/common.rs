@@ -83,7 +83,10 @@ pub fn assert_agreement(scene: &SceneGeometry, rays: &[Ray]) -> usize {
             let (mut hits, mut blocked) = (vec![None; rays.len()], vec![false; rays.len()]);
             other.closest_hits(rays, query, &mut hits, c);
             other.any_hits(rays, query, &mut blocked, c);
+            let mut coherent = vec![None; rays.len()];
+            other.closest_hits_coherent(rays, query, &mut coherent, c);
             for (i, expected) in one.iter().enumerate() {
+                assert_eq!(bits(coherent[i]), bits(*expected), "a packet in {kind}: {:?}", rays[i]);
                 assert_eq!(bits(hits[i]), bits(*expected), "a batch in {kind}: {:?}", rays[i]);
                 assert_eq!(blocked[i], expected.is_some(), "a batch in {kind}: {:?}", rays[i]);
             }
