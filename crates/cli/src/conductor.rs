@@ -4,7 +4,7 @@ use crate::checkpoint::Checkpoint;
 use crate::parts::taken;
 use crate::problem::Problem;
 use crate::report;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::ProgressBar;
 use kirkas_render::{Control, Film, Renderer, Statistics};
 use std::ops::Range;
 use std::sync::Mutex;
@@ -19,6 +19,10 @@ const MOST_SAMPLES: u32 = 16;
 /// A pass is no longer than this, if it can be: then it is soon time for a checkpoint, or to stop.
 const LONGEST_PASS: Duration = Duration::from_secs(10);
 
+/// Why a render ended early.
+const STOPPED: &str = "stopped";
+const TIME_IS_UP: &str = "the time limit was reached";
+
 /// Watches a render.
 pub struct Conductor {
     bar: ProgressBar,
@@ -27,17 +31,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// `total` samples of pixels, of which `done` are there.
-    pub fn new(
-        is_quiet: bool,
-        total: u64,
-        done: u64,
-        deadline: Option<Instant>,
-        checkpoint: Option<Checkpoint>,
-    ) -> Self {
-        let target = if is_quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-        let bar = ProgressBar::with_draw_target(Some(total), target).with_style(style()).with_position(done);
-        bar.reset_eta();
+    /// With a bar that counts samples of pixels.
+    pub fn new(bar: ProgressBar, deadline: Option<Instant>, checkpoint: Option<Checkpoint>) -> Self {
         Conductor { bar, deadline, checkpoint: checkpoint.map(Mutex::new) }
     }
 
@@ -77,8 +72,8 @@ impl Conductor {
         }
         Ok(match STOPS.load(Ordering::Relaxed) {
             _ if taken(film).0 >= wanted => None,
-            0 => Some("the time limit was reached"),
-            _ => Some("stopped"),
+            0 => Some(TIME_IS_UP),
+            _ => Some(STOPPED),
         })
     }
 
@@ -105,27 +100,12 @@ impl Control for Conductor {
     }
 }
 
-fn style() -> ProgressStyle {
-    let rate = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-        let _ = write!(out, "{:.2} M samples/s", state.per_sec() / 1e6);
-    };
-    let eta = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-        let _ = write!(out, "{}", short(state.eta()));
-    };
-    ProgressStyle::with_template("{bar:40} {percent:>3} %  {rate}  {left} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar())
-        .with_key("rate", rate)
-        .with_key("left", eta)
-        .progress_chars("━╸ ")
-}
-
-fn short(time: Duration) -> String {
-    let s = time.as_secs();
-    match s {
-        0..60 => format!("{s} s"),
-        60..3600 => format!("{}:{:02} min", s / 60, s % 60),
-        _ => format!("{}:{:02} h", s / 3600, s / 60 % 60),
+/// Why nothing more should begin, if so.
+pub fn why_to_stop(deadline: Option<Instant>) -> Option<&'static str> {
+    if STOPS.load(Ordering::Relaxed) > 0 {
+        return Some(STOPPED);
     }
+    deadline.is_some_and(|d| Instant::now() >= d).then_some(TIME_IS_UP)
 }
 
 /// From now on Ctrl-C ends the render kindly: once after the running pass, twice at the next chance, three times at once.

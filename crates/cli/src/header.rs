@@ -9,6 +9,8 @@
 //! | `kirkas.files` | one line per file: its SHA-256 and its path from the root folder |
 //! | `kirkas.overrides` | one line per value that the command line set |
 //! | `kirkas.seed` | which of all pictures |
+//! | `kirkas.frame` | which frame of a film, if it is one |
+//! | `kirkas.crop` | which part of the whole image, if not all: `x0,y0,x1,y1` |
 //! | `kirkas.samples` | which samples of each pixel, such as `0..64` |
 //! | `kirkas.unfinished` | if stopped within a pass: which further samples some pixels have |
 //! | `kirkas.invalid` | samples left out because they were not finite, if any |
@@ -27,12 +29,16 @@ const UNITS: &str = "linear, scene-referred, Rec.709 primaries; 1.0 is one unit 
 const PREFIX: &str = "kirkas.";
 
 /// Texts that must agree between pictures that are added, and what is said where they do not.
-const MUST_AGREE: [(&str, &str); 4] = [
+const MUST_AGREE: [(&str, &str); 5] = [
     ("version", "the version of Kirkas"),
     ("scene_hash", "the scene"),
     ("overrides", "the overrides"),
     ("seed", "the seed"),
+    ("frame", "the frame"),
 ];
+
+/// Texts that may differ between files of one picture.
+const MAY_DIFFER: [&str; 3] = ["argv", "scene", "invalid"];
 
 /// The texts, by name without `kirkas.`. An absent one is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,14 +64,20 @@ impl Header {
 
     /// From a picture's attributes.
     pub fn of_image(image: &Image) -> Self {
-        let named = |(name, value): (&String, &Attribute)| match value {
-            Attribute::Text(text) => Some((name.strip_prefix(PREFIX)?.to_string(), text.clone())),
+        let text = |(name, value): (&String, &Attribute)| match value {
+            Attribute::Text(text) => Some((name.clone(), text.clone())),
             Attribute::Number(_) => None,
         };
-        let mut texts: Texts = image.attributes.iter().filter_map(named).collect();
+        let mut header = Header::of_texts(&image.attributes.iter().filter_map(text).collect());
         // The layout of the integers is the film's.
-        texts.remove("groups");
-        Header(texts)
+        header.0.remove("groups");
+        header
+    }
+
+    /// From the texts of a PNG or HDR picture.
+    pub fn of_texts(texts: &Texts) -> Self {
+        let ours = |(name, text): (&String, &String)| Some((name.strip_prefix(PREFIX)?.to_string(), text.clone()));
+        Header(texts.iter().filter_map(ours).collect())
     }
 
     /// Say something; an empty text says nothing.
@@ -94,6 +106,14 @@ impl Header {
     /// As an EXR keeps it.
     pub fn write_to(&self, image: &mut Image) {
         image.attributes.extend(self.texts().into_iter().map(|(name, text)| (name, Attribute::Text(text))));
+    }
+
+    /// True when both tell of one picture, with the same samples, shown alike.
+    pub fn is_of_same_picture(&self, other: &Header) -> bool {
+        let told = |h: &Header| -> Texts {
+            h.0.iter().filter(|t| !MAY_DIFFER.contains(&t.0.as_str())).map(|(n, t)| (n.clone(), t.clone())).collect()
+        };
+        told(self) == told(other)
     }
 
     /// Why samples of `other` are not samples of the same picture; empty if they are.

@@ -61,9 +61,9 @@ pub fn check_writable(path: &Path) -> Result<(), Problem> {
     }
 }
 
-/// Make sure that nothing which is written replaces something that was read, nor another file that is written.
+/// Make sure that nothing which is written replaces something that was read (at these true places), nor another file that is
+/// written.
 pub fn check_no_loss<'a>(outputs: impl IntoIterator<Item = &'a Path>, inputs: &[PathBuf]) -> Result<(), Problem> {
-    let inputs: Vec<PathBuf> = inputs.iter().map(|p| true_place(p)).collect();
     let mut seen: Vec<PathBuf> = Vec::new();
     for path in outputs {
         let place = true_place(path);
@@ -83,7 +83,7 @@ pub fn check_no_loss<'a>(outputs: impl IntoIterator<Item = &'a Path>, inputs: &[
 }
 
 /// One name for a file, whatever way leads to it.
-fn true_place(path: &Path) -> PathBuf {
+pub fn true_place(path: &Path) -> PathBuf {
     if let Ok(full) = path.canonicalize() {
         return full;
     }

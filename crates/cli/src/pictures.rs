@@ -32,9 +32,7 @@ pub struct Development {
 impl Development {
     /// Write all files.
     pub fn write(&self, film: &Film, header: &Header, files: &[PictureFile]) -> Result<(), Problem> {
-        let mut header = header.clone();
-        header.set("exposure", self.exposure.to_string());
-        header.set("tone", self.tone.as_str());
+        let header = self.told(header);
         for file in files {
             let bytes = match file.format {
                 PictureFormat::Png => self.png(&film.to_rgb(), &header.texts()),
@@ -49,6 +47,14 @@ impl Development {
             write_atomically(&path, &bytes.map_err(|e| failed(&path, e))?)?;
         }
         Ok(())
+    }
+
+    /// The header that the files get.
+    pub fn told(&self, header: &Header) -> Header {
+        let mut header = header.clone();
+        header.set("exposure", self.exposure.to_string());
+        header.set("tone", self.tone.as_str());
+        header
     }
 
     /// `OUT.depth.png` beside `OUT.png`.

@@ -9,13 +9,13 @@ use std::ops::Range;
 /// Seconds, by what they were spent on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seconds {
-    /// Reading and parsing.
+    /// Reading and parsing; in a film, the first frame bears it.
     pub load: f64,
     /// Compiling and building what finds hits.
     pub build: f64,
     /// Moving rays.
     pub render: f64,
-    /// From the start of the program to the last file.
+    /// From the start of the program, or from the end of the frame before, to the last file.
     pub total: f64,
 }
 
@@ -40,6 +40,7 @@ pub fn stats_json(
         "scene": text("kirkas.scene"),
         "scene_hash": text("kirkas.scene_hash"),
         "seed": prepared.seed,
+        "frame": prepared.frame,
         "spp": samples.end - samples.start,
         "samples": text("kirkas.samples"),
         "size": [film.layout.size.0, film.layout.size.1],

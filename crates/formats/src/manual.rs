@@ -79,11 +79,33 @@ Steps: `{ translate = [x, y, z] }`, `{ rotate = [ax, ay, az, degrees] }` about a
 `{ scale = [x, y, z] }`, `{ look_at = { from = [..], to = [..], up = [..] } }`, `{ matrix = [12 or 16 numbers by rows] }`.
 
 `motion` is a list of key frames; between them translation and stretch go straight and rotation turns evenly. It needs a camera
-whose `shutter` is open for a while, or `--time`:
+whose `shutter` is open for a while, or `--time`, or `--frames`:
 
 ```toml
 motion = [{ time = 0, transform = [] }, { time = 1, transform = [{ rotate = [0, 0, 1, 90] }] }]
 ```
+
+## Make a film
+
+`--frames A..B` renders the frames from A up to, not including, B. Frame n opens the shutter at n divided by
+`film.frames_per_second`, for as long as the camera's `shutter` is open: a film camera's usual half of each frame is
+`shutter = [0, 0.0208]` at 24 frames per second, and `shutter = [0, 0]` gives sharp moments. One second of the lecture's windmill:
+
+```sh
+kirkas render scenes/lecture/motion_blur.toml --frames 0..24 -D 'cameras.main.shutter=[0, 0.0208]' -o mill.png
+ffmpeg -framerate 24 -i mill.%04d.png -pix_fmt yuv420p mill.mp4
+```
+
+Every file of a frame has its number before the extension, `mill.0007.png`, or in place of a run of `#` in its name:
+`-o mill_##.exr` gives `mill_07.exr`. All frames of a run get as many digits as its last one needs. Pictures, their layers,
+`--stats` and `--checkpoint` are numbered alike.
+
+A frame is the same picture, bit for bit, whether it is rendered alone, in a film or on another machine, so a film can be cut
+into pieces: `--frames 0..12` here and `--frames 12..24` there. The frame's number goes into the numbers of its samples: noise
+does not stand still on the screen, and a scene without motion still has other noise in every frame (but the same as ever in
+each). With `--resume` frames are left as they are whose pictures are there, finished, and made of the same scene with the same
+settings; others are rendered. Ctrl-C ends the film after the running pass; that frame has fewer samples, says so in its header,
+and is rendered again on `--resume`.
 "##;
 
 /// The page as Markdown.

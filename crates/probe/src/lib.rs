@@ -28,7 +28,7 @@ pub fn film() -> Film {
     let access = FileAccess::new(Box::new(files), Limits::default());
     let description = load(&access, "everything.toml").expect("a sound scene");
     let assets = FormatAssets::new(&access, &description.sources);
-    let options = Options { crop: None, aovs: AovSet(0xff) };
+    let options = Options { aovs: AovSet(0xff), ..Options::default() };
     let prepared = prepare(&description, &assets, &options).expect("a scene that compiles");
     let mut film = Film::new(prepared.film.clone());
     prepared.renderer(16).render(&mut film, 0..SAMPLES, &Undisturbed);

@@ -8,17 +8,16 @@ use crate::camera::Camera;
 use crate::catalog::{ACCELERATORS, catalog};
 use crate::film::filter::Filter;
 use crate::film::{AovSet, FilmLayout, Rect};
+use crate::frames::{bad_geometry, frame_time};
 use crate::integrators::whitted::Whitted;
 use crate::integrators::{Integrator, MediumStack};
 use crate::lights::{AreaLight, Lamp, LightEntry, ambient_radiance, area_growth};
 use crate::materials::Material;
 use crate::placement::{PlacedPart, Placement, place_objects};
-use crate::sampler::SamplerKind;
+use crate::sampler::{SamplerKind, frame_seed};
 use crate::scene::{InstanceInfo, PRIMARY, PartInfo, Scene};
 use crate::textures::Textures;
-use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Instance, Query, SceneGeometry};
-use kirkas_geometry::{DVec3, Ray};
-
+use kirkas_accel::{Accel, AccelKind, Executor, Geometry, Instance, SceneGeometry};
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
 use std::collections::BTreeMap;
@@ -30,6 +29,8 @@ pub struct Options {
     pub crop: Option<Rect>,
     /// AOVs to keep.
     pub aovs: AovSet,
+    /// The frame of a film; `None` = one picture, at the time that the camera says.
+    pub frame: Option<u32>,
 }
 
 /// A scene and all that its description says of the picture.
@@ -48,6 +49,10 @@ pub struct Prepared {
     pub samples: u32,
     /// Which of all pictures.
     pub seed: u64,
+    /// The frame of a film, if it is one.
+    pub frame: Option<u32>,
+    /// Frame n opens the shutter at n over this, in seconds.
+    pub frames_per_second: f64,
     /// What the film holds.
     pub film: FilmLayout,
     /// Display exposure in stops.
@@ -76,7 +81,7 @@ impl Prepared {
             filter: &self.filter,
             shift: self.shift,
             sampler: self.sampler,
-            seed: self.seed,
+            seed: frame_seed(self.seed, self.frame),
             resolution: self.film.size,
             planes: self.film.planes(),
             keeps_aovs: !self.film.aovs.is_empty(),
@@ -95,7 +100,9 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     }
     let singles = Singles::new(description, &catalog);
     let film = film_layout(&singles.params(Kind::Film), options).map_err(|d| vec![d])?;
-    let scene = compile(description, &catalog, assets, &singles, film.size, &mut warnings)?;
+    let frames_per_second = singles.params(Kind::Film).number("frames_per_second");
+    let time = options.frame.map(|n| frame_time(n, frames_per_second));
+    let scene = compile(description, &catalog, assets, &singles, (film.size, time), &mut warnings)?;
     let (p, s) = (singles.params(Kind::Film), singles.params(Kind::Sampler));
     let filter =
         Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
@@ -107,6 +114,8 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
         sampler: SamplerKind::from_name(s.spec().name).unwrap_or(SamplerKind::Sobol),
         samples: s.integer("samples") as u32,
         seed: s.integer("seed") as u64,
+        frame: options.frame,
+        frames_per_second,
         film: FilmLayout { groups, ..film },
         exposure: p.f32("exposure"),
         tone: p.text("tone").unwrap_or("linear").to_string(),
@@ -180,11 +189,9 @@ fn compile(
     catalog: &Catalog,
     assets: &dyn Assets,
     singles: &Singles,
-    resolution: (u32, u32),
+    (resolution, time): ((u32, u32), Option<f64>),
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Scene, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
-
     // Textures and materials, by name.
     let textures = Textures::compile(d, catalog, assets)?;
     let params = |kind, entity| Params::new(entity, kind, catalog).expect("the description was validated");
@@ -196,6 +203,7 @@ fn compile(
 
     // The camera.
     let camera = compile_camera(d, catalog, singles)?;
+    let camera = time.map_or(camera.clone(), |t| camera.opened_at(t));
 
     // Objects: parts in the world, aggregates, and where they are placed.
     let mut groups = Groups::default();
@@ -251,9 +259,7 @@ fn compile(
     };
     let kind_name = singles.params(Kind::Accelerator).spec().name;
     let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::Bvh2, |a| a.1);
-    let accel = Accel::build(kind, scene_geometry, &Threads).map_err(|e| {
-        one(Diagnostic::error("bad-geometry", e.to_string()).help("mend the mesh or the object that it names"))
-    })?;
+    let accel = Accel::build(kind, scene_geometry, &Threads).map_err(bad_geometry)?;
 
     if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {
         let background = Background::new(&singles.params(Kind::Background));
@@ -265,7 +271,7 @@ fn compile(
             );
         }
     }
-    if open == close {
+    if open == close && time.is_none() {
         if let Some(moving) =
             d.all(Kind::Object).iter().chain(d.all(Kind::Camera)).find(|e| e.params.get("motion").is_some())
         {
@@ -275,13 +281,13 @@ fn compile(
                     format!("`{}` moves, but the shutter is open for no time", moving.name.text),
                 )
                 .at(moving.name.span, "moves")
-                .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time"),
+                .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time and --frames"),
             );
         }
     }
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
-    let mut scene = Scene {
+    let scene = Scene {
         accel,
         world: infos(world),
         aggregates: aggregates.into_iter().map(infos).collect(),
@@ -298,16 +304,7 @@ fn compile(
         groups: groups.0,
         object_names,
     };
-
-    // Bodies that the camera stands in.
-    let middle = (f64::from(resolution.0) / 2.0, f64::from(resolution.1) / 2.0);
-    let start =
-        scene.camera.ray(&crate::camera::CameraSample { film: middle, lens: (0.5, 0.5), time: open }, resolution);
-    scene.camera_media = bodies_around(&scene, &start);
-    if let Some(body) = scene.ruling(&scene.camera_media) {
-        scene.camera_gain = 1.0 / scene.materials[body as usize].radiance_gain;
-    }
-    Ok(scene)
+    Ok(scene.with_camera_media(resolution))
 }
 
 fn compile_camera(d: &Description, catalog: &Catalog, singles: &Singles) -> Result<Camera, Vec<Diagnostic>> {
@@ -371,31 +368,4 @@ fn add_area_lights(
             add(part, Some(instance));
         }
     }
-}
-
-/// Bodies that a point is inside of: those whose boundary a ray from there first meets from within, in some direction.
-fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
-    let mut media = MediumStack::EMPTY;
-    if scene.materials.iter().all(|m| m.medium.is_none()) {
-        return media;
-    }
-    let ways =
-        [DVec3::new(0.2917, 0.8713, 0.3947), DVec3::new(0.5113, -0.6139, 0.6015), DVec3::new(-0.8291, 0.2171, -0.5153)];
-    for way in ways {
-        let mut met = Vec::new();
-        let mut ray = Ray { direction: way.as_vec3(), mask: u32::MAX, ..*start };
-        const MOST: usize = 10_000;
-        for _ in 0..MOST {
-            let Some(hit) = scene.accel.closest_hit(&ray, Query::ALL, 0, &mut Counters::default()) else { break };
-            let s = scene.surface(&ray, &hit);
-            if scene.material(&s).medium.is_some() && !met.contains(&s.material) {
-                met.push(s.material);
-                if !s.is_front && !media.materials().contains(&s.material) {
-                    media = media.entered(s.material);
-                }
-            }
-            ray = Ray { mask: u32::MAX, ..s.ray_towards(way, &ray) };
-        }
-    }
-    media
 }

@@ -1,6 +1,6 @@
 //! From a description to an image: compile it, move rays through it, add up light.
 //!
-//! In the order in which a ray meets them: [`compile_scene`] · [`render`] (the main path on one page) · [`camera`] ·
+//! In the order in which a ray meets them: [`compile_scene`] · [`frames`] · [`render`] (the main path on one page) · [`camera`] ·
 //! [`sampler`] · [`shapes`] · [`materials`] · [`textures`] · [`lights`] · [`background`] · [`integrators`] · [`film`] ·
 //! [`observe`].
 //!
@@ -12,6 +12,7 @@ pub mod catalog;
 pub mod compile_scene;
 pub mod film;
 pub mod flock;
+pub mod frames;
 pub mod integrators;
 pub mod lights;
 pub mod materials;

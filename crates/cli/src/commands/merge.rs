@@ -1,7 +1,7 @@
 //! `kirkas merge`: partial pictures added up, as if they had been rendered at once.
 
 use crate::aov_args;
-use crate::output::{PictureFile, check_no_loss, check_writable};
+use crate::output::{PictureFile, check_no_loss, check_writable, true_place};
 use crate::parts::Part;
 use crate::pictures::Development;
 use crate::problem::{Outcome, Problem};
@@ -38,7 +38,8 @@ pub struct Merge {
 pub fn run(args: &Merge) -> Result<Outcome, Problem> {
     let files = args.output.iter().map(|p| PictureFile::new(p)).collect::<Result<Vec<_>, _>>()?;
     files.iter().try_for_each(|f| check_writable(&f.path))?;
-    check_no_loss(files.iter().map(|f| f.path.as_path()), &args.parts)?;
+    let parts: Vec<PathBuf> = args.parts.iter().map(|p| true_place(p)).collect();
+    check_no_loss(files.iter().map(|f| f.path.as_path()), &parts)?;
     let (first, others) = args.parts.split_first().expect("clap asks for one at least");
     let mut sum = read_whole(first)?;
     for path in others {

@@ -1,32 +1,37 @@
 //! `kirkas render`: a scene becomes pictures.
 
 use crate::aov_args::{self, AovArg};
-use crate::checkpoint::{self, Checkpoint};
-use crate::conductor::{Conductor, watch_for_stops};
+use crate::conductor::{watch_for_stops, why_to_stop};
+use crate::frames;
 use crate::header::Header;
-use crate::output::{PictureFile, check_no_loss, check_writable, print_out, write_atomically};
-use crate::parts::tell_samples;
+use crate::job::Job;
+use crate::output::{PictureFile, check_no_loss, true_place};
 use crate::pictures::Development;
+use crate::places::Places;
 use crate::problem::{Outcome, Problem};
+use crate::progress::Progress;
 use crate::ranges::parse_range;
 use crate::report;
 use crate::scene_file::SceneFile;
 use crate::settings::{SceneArgs, Settings};
-use crate::stats::{Seconds, stats_json};
-use kirkas_render::{Film, Options, Prepared, Rect, prepare};
+use crate::stats::Seconds;
+use clap::ArgGroup;
+use kirkas_render::{Options, Prepared, Rect, prepare};
 use kirkas_scene::{Diagnostic, Kind};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 const EXAMPLES: &str = "Examples:
   kirkas render scenes/sphereflake.toml -o flake.png
   kirkas render scene.toml -o out.exr -o out.png --spp 256 --aov depth,normals
-  kirkas render scene.toml --spp 4096 --checkpoint night.exr --resume -o out.exr";
+  kirkas render scene.toml --spp 4096 --checkpoint night.exr --resume -o out.exr
+  kirkas render scene.toml --frames 0..48 --resume -o out.####.png -D film.frames_per_second=25
+  ffmpeg -framerate 25 -i out.%04d.png -pix_fmt yuv420p out.mp4";
 
 /// Render a scene to pictures
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, group = ArgGroup::new("resumable").args(["checkpoint", "frames"]).multiple(true))]
 pub struct Render {
     #[command(flatten)]
     scene: SceneArgs,
@@ -57,10 +62,14 @@ pub struct Render {
     /// Render only this part: pixels from the top left
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
     crop: Option<Rect>,
+    /// Render a film: frames from A up to, not including, B. Frame n opens the shutter at n / film.frames_per_second seconds;
+    /// OUT.png becomes OUT.0007.png, and a run of # in a name (OUT.###.png) becomes the number
+    #[arg(long, value_name = "A..B", value_parser = frames::parse, conflicts_with = "time")]
+    frames: Option<Range<u32>>,
     /// Open the shutter at this time, in seconds
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = finite)]
     time: Option<f64>,
-    /// Finish the pass that runs after so many seconds, then write
+    /// Finish the pass that runs after so many seconds, then write; begin no other frame
     #[arg(long, value_name = "SECONDS", value_parser = not_negative)]
     time_limit: Option<f64>,
     /// Render only these samples of each pixel, to be merged: from A up to, not including, B
@@ -68,22 +77,22 @@ pub struct Render {
     samples: Option<Range<u32>>,
     /// Keep what is done in this file, now and then
     #[arg(long, value_name = "FILE")]
-    checkpoint: Option<PathBuf>,
-    /// Go on from the checkpoint
-    #[arg(long, requires = "checkpoint")]
-    resume: bool,
+    pub checkpoint: Option<PathBuf>,
+    /// Go on from the checkpoint; with --frames, leave finished frames as they are
+    #[arg(long, requires = "resumable")]
+    pub resume: bool,
     /// From one checkpoint to the next
     #[arg(long, value_name = "SECONDS", hide = true, default_value_t = 20)]
-    checkpoint_seconds: u64,
+    pub checkpoint_seconds: u64,
     /// Extra layers: depth[:NEAR:FAR], normals, albedo, position, object_id, material_id, sample_count, variance
     #[arg(long, value_name = "NAME[:ARGS],...", value_delimiter = ',')]
     aov: Vec<String>,
     /// Write what it cost as JSON; `-` is stdout
     #[arg(long, value_name = "FILE")]
-    stats: Option<PathBuf>,
+    pub stats: Option<PathBuf>,
     /// Show no progress and no warnings
     #[arg(long)]
-    quiet: bool,
+    pub quiet: bool,
     /// EXR in 16 bits instead of 32
     #[arg(long)]
     half: bool,
@@ -95,15 +104,27 @@ pub struct Render {
     tone: Option<String>,
     /// Rays that travel together
     #[arg(long, value_name = "N", hide = true, default_value_t = 64, value_parser = clap::value_parser!(u16).range(1..))]
-    flock: u16,
+    pub flock: u16,
 }
 
 /// Do it.
 pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     // What can be refused before any work.
     let aovs = aov_args::parse(&args.aov)?;
-    let files = output_files(args)?;
-    check_places(args, &files)?;
+    let places = Places {
+        pictures: output_files(args)?,
+        stats: args.stats.clone().filter(|p| p.as_os_str() != "-"),
+        checkpoint: args.checkpoint.clone(),
+    };
+    let frames: Vec<Option<u32>> = args.frames.clone().map_or(vec![None], |all| all.map(Some).collect());
+    let places_of = |frame: Option<u32>| match (frame, &args.frames) {
+        (Some(n), Some(all)) => places.of_frame(n, all),
+        _ => places.clone(),
+    };
+    places_of(frames[0]).check()?;
+    if !args.resume {
+        frames.iter().try_for_each(|&frame| places_of(frame).check_checkpoint())?;
+    }
     if let Some(n) = args.threads {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(n));
         pool.build_global().map_err(|e| Problem::failed(Diagnostic::error("no-threads", e.to_string())))?;
@@ -113,10 +134,10 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
     let overrides = apply(args, &mut scene)?;
     let mut seconds = Seconds { load: started.elapsed().as_secs_f64(), ..Seconds::default() };
-    let options = Options { crop: args.crop, aovs: aov_args::set(&aovs) };
+    let options = Options { crop: args.crop, aovs: aov_args::set(&aovs), frame: frames[0] };
     let build_started = Instant::now();
     let prepared = prepare(&scene.description, &scene.assets(), &options);
-    let prepared = prepared.map_err(|d| Problem::from(scene.failure(d)))?;
+    let mut prepared = prepared.map_err(|d| Problem::from(scene.failure(d)))?;
     seconds.build = build_started.elapsed().as_secs_f64();
     let warnings = scene.failure([scene.warnings.clone(), prepared.warnings.clone(), scene.mesh_warnings()].concat());
     if !args.quiet {
@@ -125,54 +146,55 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
 
     // Nothing that the scene was made of may be lost.
     let development = development(args, &prepared, aovs);
-    let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| scene.root.join(k)).collect();
-    let layers = development.aov_files(&files);
-    let outputs = files
-        .iter()
-        .map(|f| &f.path)
-        .chain(layers.iter().map(|l| &l.0))
-        .chain(stats_file(args))
-        .chain(&args.checkpoint);
-    check_no_loss(outputs.map(PathBuf::as_path), &inputs)?;
+    let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| true_place(&scene.root.join(k))).collect();
+    for &frame in &frames {
+        check_no_loss(places_of(frame).all(&development).iter().map(PathBuf::as_path), &inputs)?;
+    }
 
-    // Begin, or go on.
-    let samples = args.samples.clone().unwrap_or(0..prepared.samples);
+    // Render picture after picture.
     let scene_name = args.scene.scene.to_string_lossy();
     let mut header = Header::new(&scene_name, &scene.files, &overrides, prepared.seed);
     header.set("aov", aov_args::text(&development.aovs));
-    let mut film = first_film(args, &header, &prepared, &samples)?;
-
-    // Render.
-    let usual = Duration::from_secs(args.checkpoint_seconds);
-    let checkpoint = args.checkpoint.as_ref().map(|path| Checkpoint::new(path, &header, samples.start, usual));
-    let wanted = samples.end - samples.start;
-    let pixels = prepared.film.crop.area() as u64;
-    let done: u64 = film.tiles.iter().flat_map(|t| &t.counts).map(|c| u64::from(c.taken)).sum();
-    let deadline = args.time_limit.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    header.set("crop", args.crop.map_or(String::new(), |c| format!("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)));
+    let job = Job {
+        args,
+        samples: args.samples.clone().unwrap_or(0..prepared.samples),
+        development,
+        deadline: args.time_limit.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?)),
+        warnings: warnings.diagnostics,
+        progress: Progress::new(args.quiet, args.frames.as_ref().map(Range::len)),
+    };
     watch_for_stops();
-    let render_started = Instant::now();
-    let conductor = Conductor::new(args.quiet, pixels * u64::from(wanted), done, deadline, checkpoint);
-    let counted = conductor.render(&prepared.renderer(usize::from(args.flock)), &mut film, samples.clone());
-    seconds.render = render_started.elapsed().as_secs_f64();
-
-    // Write.
-    // The checkpoint first: should the pictures fail, nothing is lost.
-    let stopped = conductor.finish(&film, wanted);
-    let done = tell_samples(&mut header, &film, samples.start);
-    development.write(&film, &header, &files)?;
-    let stopped = stopped?;
-    seconds.total = started.elapsed().as_secs_f64();
-    if let Some(path) = &args.stats {
-        let warnings = &warnings.diagnostics;
-        let json = stats_json(&header.texts(), &prepared, &film, &done, &counted, seconds, warnings);
-        let text = format!("{json:#}\n");
-        if stats_file(args).is_some() { write_atomically(path, text.as_bytes())? } else { print_out(text.as_bytes())? }
+    let (mut begun, mut is_first, mut skipped) = (started, true, 0);
+    for &frame in &frames {
+        let places = places_of(frame);
+        if let Some(n) = frame {
+            header.set("frame", n.to_string());
+            job.progress.begin(n);
+            if args.resume && job.is_done(&header, &places) {
+                job.progress.end(true);
+                skipped += 1;
+                continue;
+            }
+            if let Some(why) = why_to_stop(job.deadline).filter(|_| !is_first) {
+                job.progress.suspend(|| report::note(format_args!("kirkas: {why} before frame {n}")));
+                break;
+            }
+            if prepared.frame != frame {
+                let build_started = Instant::now();
+                prepared = prepared.at_frame(n).map_err(|d| Problem::from(scene.failure(d)))?;
+                seconds.build += build_started.elapsed().as_secs_f64();
+            }
+        }
+        if !job.render(&prepared, header.clone(), &places, (seconds, begun))? {
+            break;
+        }
+        job.progress.end(false);
+        (seconds, begun, is_first) = (Seconds::default(), Instant::now(), false);
     }
-    if let Some(why) = stopped {
-        report::note(format_args!("kirkas: {why} after {} of {wanted} samples per pixel", done.end - done.start));
-    }
-    if film.invalid_samples() > 0 && !args.quiet {
-        report::print(&Default::default(), &[invalid_samples(&film)]);
+    if skipped > 0 && !args.quiet {
+        let all = frames.len();
+        job.progress.suspend(|| report::note(format_args!("kirkas: {skipped} of {all} frames were finished already")));
     }
     Ok(Outcome::Done)
 }
@@ -181,39 +203,6 @@ fn output_files(args: &Render) -> Result<Vec<PictureFile>, Problem> {
     let default = || PathBuf::from(args.scene.scene.file_stem().unwrap_or_default()).with_extension("png");
     let paths = if args.output.is_empty() { vec![default()] } else { args.output.clone() };
     paths.iter().map(|p| PictureFile::new(p)).collect()
-}
-
-/// Where the statistics go, unless to stdout (`-`).
-fn stats_file(args: &Render) -> Option<&PathBuf> {
-    args.stats.as_ref().filter(|p| p.as_os_str() != "-")
-}
-
-/// Every file can be written, none is written twice, no checkpoint is lost.
-fn check_places(args: &Render, files: &[PictureFile]) -> Result<(), Problem> {
-    let mut places: Vec<&Path> = files.iter().map(|f| f.path.as_path()).collect();
-    places.extend(stats_file(args).map(PathBuf::as_path));
-    places.extend(args.checkpoint.as_deref());
-    for (i, place) in places.iter().enumerate() {
-        if places[..i].contains(place) {
-            let message = format!("`{}` would be written twice", place.display());
-            return Err(Problem::input(
-                Diagnostic::error("same-file", message).help("give each file a name of its own"),
-            ));
-        }
-        check_writable(place)?;
-    }
-    match &args.checkpoint {
-        Some(path) if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("exr")) => {
-            let message = format!("the checkpoint `{}` must be an `.exr`", path.display());
-            Err(Problem::input(Diagnostic::error("unknown-format", message).help("give it the extension `.exr`")))
-        }
-        Some(path) if path.exists() && !args.resume => {
-            let message = format!("the checkpoint `{}` exists already", path.display());
-            let help = "give --resume to go on from it, or remove it to begin anew";
-            Err(Problem::input(Diagnostic::error("checkpoint-exists", message).help(help)))
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Set what the options say; the overrides as the header keeps them.
@@ -252,17 +241,6 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     set.finish()
 }
 
-fn first_film(args: &Render, header: &Header, prepared: &Prepared, samples: &Range<u32>) -> Result<Film, Problem> {
-    match args.checkpoint.as_ref().filter(|_| args.resume) {
-        Some(path) if path.exists() => checkpoint::load(path, header, &prepared.film, samples),
-        Some(path) => {
-            report::note(format_args!("kirkas: no checkpoint `{}` yet, beginning anew", path.display()));
-            Ok(Film::new(prepared.film.clone()))
-        }
-        None => Ok(Film::new(prepared.film.clone())),
-    }
-}
-
 fn development(args: &Render, prepared: &Prepared, aovs: Vec<AovArg>) -> Development {
     Development {
         exposure: prepared.exposure,
@@ -271,18 +249,6 @@ fn development(args: &Render, prepared: &Prepared, aovs: Vec<AovArg>) -> Develop
         keeps_integers: args.samples.is_some(),
         aovs,
     }
-}
-
-fn invalid_samples(film: &Film) -> Diagnostic {
-    let places: Vec<String> = film
-        .tiles
-        .iter()
-        .flat_map(|t| &t.invalid)
-        .take(4)
-        .map(|s| format!("pixel {},{} sample {}", s.x, s.y, s.sample))
-        .collect();
-    let message = format!("{} samples were left out: they were not finite, or absurdly bright", film.invalid_samples());
-    Diagnostic::warning("invalid-samples", message).help(format!("look at {}", places.join(", ")))
 }
 
 fn size(text: &str) -> Result<(i64, i64), String> {

@@ -7,5 +7,6 @@ mod bits;
 mod commands;
 mod errors;
 mod faults;
+mod films;
 mod interruptions;
 mod pages;

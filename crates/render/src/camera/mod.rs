@@ -59,6 +59,8 @@ pub struct Camera {
     world_from_camera: DAffine3,
     motion: Option<AnimatedTransform>,
     shutter: (f64, f64),
+    /// How long the shutter is open, in seconds, whenever it opens.
+    exposure: f64,
 }
 
 /// A ray in camera space; the direction need not be unit.
@@ -96,8 +98,13 @@ impl Camera {
             "thin_lens" => Projection::ThinLens(ThinLens::compile(params)?),
             _ => Projection::Perspective(Perspective::compile(params)),
         };
-        let mut camera =
-            Camera { projection, world_from_camera: transform * placed, motion: None, shutter: (open, close) };
+        let mut camera = Camera {
+            projection,
+            world_from_camera: transform * placed,
+            motion: None,
+            shutter: (open, close),
+            exposure: close - open,
+        };
         match motion {
             Some(m) if m.is_moving() => camera.motion = Some(m),
             Some(m) => camera.world_from_camera = m.at(open) * camera.world_from_camera,
@@ -118,6 +125,11 @@ impl Camera {
         let origin = world_from_camera.transform_point3(local.origin);
         let direction = world_from_camera.transform_vector3(local.direction).normalize();
         Ray::new(origin.as_vec3(), direction.as_vec3()).at_time(sample.time as f32)
+    }
+
+    /// The same camera with its shutter opened at `time`, in seconds, for as long as ever.
+    pub fn opened_at(&self, time: f64) -> Camera {
+        Camera { shutter: (time, time + self.exposure), ..self.clone() }
     }
 
     /// When the shutter opens and closes, in seconds.

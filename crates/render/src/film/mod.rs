@@ -41,6 +41,9 @@ pub const SPEC: TypeSpec = TypeSpec {
             "Tone curve of PNG output; `raw` writes the number times 255, without the sRGB curve.",
         ),
         ParamSpec::new("camera", ParamType::Reference(Kind::Camera), Fallback::Absent, "Camera to use; absent = the first."),
+        ParamSpec::number("frames_per_second", 24.0, "`render --frames` opens the shutter for frame n at n over this, in seconds.")
+            .unit("1/s")
+            .range((0.001, 100_000.0)),
         ParamSpec::bool("light_groups", false, "Also keep one layer per light group."),
     ],
 };

@@ -1,10 +1,13 @@
 //! Samplers: a sample is a pure function of (pixel, sample index, dimension, seed), whatever the image size and the final
 //! count. A dimension is a hash of the branch of the ray tree and the purpose, so no effect shifts another's numbers.
+//!
+//! Every frame of a film has a seed of its own ([`frame_seed`]): noise that stood still while the picture moves would look
+//! like dirt on the lens, and noise that changes averages out over frames.
 
 mod independent;
 mod sobol;
 
-use kirkas_geometry::hash::combine;
+use kirkas_geometry::hash::{combine, of_name};
 use kirkas_scene::TypeSpec;
 
 /// Every sampler type.
@@ -29,6 +32,13 @@ impl SamplerKind {
         }
     }
 }
+
+/// The seed of the numbers of frame `frame`; that of a single picture is `seed` itself.
+pub fn frame_seed(seed: u64, frame: Option<u32>) -> u64 {
+    frame.map_or(seed, |n| combine(combine(seed, FRAME), u64::from(n)))
+}
+
+const FRAME: u64 = of_name("frame");
 
 /// The numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +85,6 @@ impl Sampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kirkas_geometry::hash::of_name;
 
     #[test]
     fn every_listed_sampler_has_a_kind() {
@@ -102,5 +111,15 @@ mod tests {
         assert_ne!(a(0, 0, 1), a(0, 0, 2));
         assert_ne!(a(0, 0, 1), a(0, 1, 1));
         assert_ne!(a(0, 0, 1), a(1, 0, 1));
+    }
+
+    #[test]
+    fn frames_of_all_seeds_have_seeds_of_their_own() {
+        assert_eq!(frame_seed(7, None), 7);
+        let mut seeds: Vec<u64> =
+            (0..20).flat_map(|s| (0..50).map(move |n| frame_seed(s, Some(n)))).chain(0..20).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 20 * 50 + 20);
     }
 }

@@ -22,7 +22,7 @@ fn all_aovs() -> AovSet {
 }
 
 fn compiled(toml: &str, crop: Option<Rect>) -> Prepared {
-    prepared_with(toml, &FILES, &Options { crop, aovs: all_aovs() })
+    prepared_with(toml, &FILES, &Options { crop, aovs: all_aovs(), frame: None })
 }
 
 /// The scene with other words in it.

@@ -4,6 +4,7 @@ mod bodies;
 mod cameras;
 mod effects;
 mod everything;
+mod films;
 mod filters;
 mod manuals;
 mod numbers;

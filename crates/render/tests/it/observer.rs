@@ -2,7 +2,6 @@
 
 use crate::support::{expose, prepared, prepared_with};
 use kirkas_optics::Light;
-use kirkas_render::film::AovSet;
 use kirkas_render::integrators::{PathState, RayKind, ShadowRay};
 use kirkas_render::observe::{Observer, PathEnd, SampleId};
 use kirkas_render::scene::SurfaceHit;
@@ -52,7 +51,7 @@ fn what_a_replay_records_sums_to_the_stored_integers() {
     let toml = include_str!("scenes/everything.toml");
     let files: [(&str, &[u8]); 2] =
         [("gem.obj", include_bytes!("scenes/gem.obj")), ("leaf.png", include_bytes!("scenes/leaf.png"))];
-    let p = prepared_with(toml, &files, &Options { crop: None, aovs: AovSet::default() });
+    let p = prepared_with(toml, &files, &Options::default());
     let (film, _) = expose(&p, 0..16);
     let planes = film.layout.planes();
     for (x, y) in [(20, 20), (3, 30), (39, 35), (12, 8), (25, 27), (33, 15)] {

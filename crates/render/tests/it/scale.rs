@@ -209,7 +209,8 @@ fn grazing_light_leaves_no_speckles() {
                         ),
                         s,
                     );
-                    let options = Options { crop: None, aovs: AovSet::from_names(["normals"]).expect("it exists") };
+                    let options =
+                        Options { aovs: AovSet::from_names(["normals"]).expect("it exists"), ..Options::default() };
                     let (film, _) = expose(&prepared_with(&toml, &[], &options), 0..1);
                     let mut lit = 0;
                     for ((n, hits), (_, _, tile, i)) in normals(&film).into_iter().zip(film.pixels()) {
@@ -242,7 +243,7 @@ fn a_torus_lit_along_its_axis_has_no_speckles() {
                 [cameras.c]\ntype = \"orthographic\"\nposition = [@0, @5, @2]\nlook_at = [0, 0, 0]\nheight = @3\n"),
             s,
         );
-        let options = Options { crop: None, aovs: AovSet::from_names(["normals"]).expect("it exists") };
+        let options = Options { aovs: AovSet::from_names(["normals"]).expect("it exists"), ..Options::default() };
         let (film, _) = expose(&prepared_with(&toml, &[], &options), 0..1);
         for ((n, hits), (_, _, tile, i)) in normals(&film).into_iter().zip(film.pixels()) {
             if hits > 0.0 {
