@@ -122,7 +122,7 @@ fn bounce(accel: &Accel, rays: &[Ray], hits: &[Option<Hit>]) -> Vec<Ray> {
                 (b - a).cross(c - a).normalize()
             }
             Shape::Spheres(s) => (p - s[hit.primitive as usize].center).normalize(),
-            Shape::User(_) => return None,
+            _ => return None,
         };
         let frame = Frame::from_z(if normal.dot(ray.direction) > 0.0 { -normal } else { normal });
         let direction = frame.to_world(square_to_cosine_hemisphere((random(i, 1), random(i, 2))));

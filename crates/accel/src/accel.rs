@@ -174,8 +174,11 @@ impl Accel {
     }
 
     fn world_level(&self) -> Level<'_> {
-        let instances = self.world.instances.len() as u32;
-        Level { geometries: &self.scene.world, instances, instance: InstancePath::WORLD }
+        self.level(&self.scene.world, &self.world, InstancePath::WORLD)
+    }
+
+    fn level<'a>(&self, geometries: &'a [Geometry], built: &Built, instance: InstancePath) -> Level<'a> {
+        Level { geometries, instances: built.instances.len() as u32, instance, shutter: self.scene.shutter }
     }
 
     /// Search an instance of the world.
@@ -188,8 +191,7 @@ impl Accel {
         let instance = InstancePath::WORLD.then(index);
         let built = &self.aggregates[placed.aggregate];
         if built.instances.is_empty() {
-            let level =
-                Level { geometries: &self.scene.aggregates[placed.aggregate].geometries, instances: 0, instance };
+            let level = self.level(&self.scene.aggregates[placed.aggregate].geometries, built, instance);
             built.structure.search(level, &ray, search, &|_, _, _| {});
         } else {
             let world_from_object = placed.place(&self.scene.instances[index as usize], search.ray.time);
@@ -206,7 +208,7 @@ impl Accel {
         search: &mut Search<ANY>,
     ) {
         let (built, held) = (&self.aggregates[aggregate], &self.scene.aggregates[aggregate]);
-        let level = Level { geometries: &held.geometries, instances: built.instances.len() as u32, instance };
+        let level = self.level(&held.geometries, built, instance);
         built.structure.search(level, &entered.ray, search, &|_, search, index| {
             let placed = &built.instances[index as usize];
             if search.is_done() {

@@ -12,7 +12,8 @@ pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &
                 return;
             }
             search.counters.primitives_tested += 1;
-            primitive::intersect(&geometry.shape, p, ray, |t, u, v| search.offer(level, g as u32, p, (t, u, v)));
+            let offer = |t, u, v| search.offer(level, g as u32, p, (t, u, v));
+            primitive::intersect(&geometry.shape, p, ray, level.shutter, offer);
         }
     }
     for instance in 0..level.instances {

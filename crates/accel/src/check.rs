@@ -3,6 +3,7 @@
 use crate::error::AccelError;
 use crate::path::MAX_NESTING;
 use crate::scene_geometry::{Geometry, Instance, SceneGeometry, Shape};
+use kirkas_geometry::Vec3;
 use kirkas_geometry::transform::is_invertible;
 
 /// More primitives than this, in the world (with the instances) or in one aggregate, are refused.
@@ -96,34 +97,94 @@ fn level(geometries: &[Geometry], aggregate: Option<usize>, instances: usize) ->
     geometries.iter().enumerate().try_for_each(|(g, geometry)| shape(&geometry.shape, aggregate, g))
 }
 
+/// Where a shape stands, for its errors.
+#[derive(Clone, Copy)]
+struct Place {
+    aggregate: Option<usize>,
+    geometry: usize,
+}
+
 fn shape(shape: &Shape, aggregate: Option<usize>, geometry: usize) -> Result<(), AccelError> {
-    let not_finite = |element, what| Err(AccelError::NotFinite { aggregate, geometry, element, what });
+    let place = Place { aggregate, geometry };
     match shape {
         Shape::Triangles { positions, indices } => {
-            if let Some(i) = positions.iter().position(|p| !p.is_finite()) {
-                return not_finite(i, "vertex");
+            place.positions(positions)?;
+            place.indices("triangle", indices, positions.len())
+        }
+        Shape::MovingTriangles { keys, indices } => {
+            let vertices = keys.first().map_or(0, Vec::len);
+            if keys.len() < 2 || keys.iter().any(|k| k.len() != vertices) {
+                let lengths = keys.iter().map(Vec::len).collect();
+                return Err(AccelError::BadKeys { aggregate, geometry, lengths });
             }
-            let vertices = positions.len();
-            for (triangle, t) in indices.iter().enumerate() {
-                if let Some(&index) = t.iter().find(|&&i| i as usize >= vertices) {
-                    return Err(AccelError::IndexOutOfRange { aggregate, geometry, triangle, index, vertices });
-                }
+            keys.iter().try_for_each(|k| place.positions(k))?;
+            place.indices("triangle", indices, vertices)
+        }
+        Shape::Quads { positions, indices } => {
+            place.positions(positions)?;
+            place.indices("quad", indices, positions.len())
+        }
+        Shape::Spheres(spheres) => place.each(spheres, "sphere", |s| (s.center.is_finite(), s.radius)),
+        Shape::Disks(disks) => {
+            place.each(disks, "disk", |d| (d.center.is_finite() && d.normal.is_finite(), d.radius))?;
+            match disks.iter().position(|d| d.normal == Vec3::ZERO) {
+                Some(primitive) => Err(place.fault("disk", primitive, "a normal of length 0")),
+                None => Ok(()),
             }
         }
-        Shape::Spheres(spheres) => {
-            let sound = |s: &crate::Sphere| s.center.is_finite() && s.radius.is_finite() && s.radius >= 0.0;
-            if let Some(i) = spheres.iter().position(|s| !sound(s)) {
-                return not_finite(i, "sphere");
-            }
+        Shape::Cylinders(all) => {
+            place.each(all, "cylinder", |c| (c.ends[0].is_finite() && c.ends[1].is_finite(), c.radius))
+        }
+        Shape::Curves { points, segments } => {
+            place.each(points, "curve point", |p| (p.position.is_finite(), p.radius))?;
+            // A segment ends at the point after its first.
+            let ends: Vec<[u32; 2]> = segments.iter().map(|&s| [s, s.saturating_add(1)]).collect();
+            place.indices("curve segment", &ends, points.len())
         }
         Shape::User(user) => {
-            for i in 0..user.len() {
-                let b = user.bounds(i as u32);
-                if b.min.is_nan() || b.max.is_nan() {
-                    return not_finite(i, "user shape");
-                }
-            }
+            let broken = |i: &usize| {
+                let b = user.bounds(*i as u32);
+                b.min.is_nan() || b.max.is_nan()
+            };
+            (0..user.len()).find(broken).map_or(Ok(()), |i| Err(place.not_finite("user shape", i)))
         }
     }
-    Ok(())
+}
+
+impl Place {
+    fn positions(self, positions: &[Vec3]) -> Result<(), AccelError> {
+        positions.iter().position(|p| !p.is_finite()).map_or(Ok(()), |i| Err(self.not_finite("vertex", i)))
+    }
+
+    fn indices<const N: usize>(self, what: &'static str, all: &[[u32; N]], vertices: usize) -> Result<(), AccelError> {
+        let Place { aggregate, geometry } = self;
+        for (element, one) in all.iter().enumerate() {
+            if let Some(&index) = one.iter().find(|&&i| i as usize >= vertices) {
+                return Err(AccelError::IndexOutOfRange { aggregate, geometry, what, element, index, vertices });
+            }
+        }
+        Ok(())
+    }
+
+    /// Round things: whether all but the radius is finite, and the radius.
+    fn each<T>(self, all: &[T], what: &'static str, of: impl Fn(&T) -> (bool, f32)) -> Result<(), AccelError> {
+        for (element, one) in all.iter().enumerate() {
+            let (is_finite, radius) = of(one);
+            if !(is_finite && radius.is_finite()) {
+                return Err(self.not_finite(what, element));
+            }
+            if radius < 0.0 {
+                return Err(self.fault(what, element, "a negative radius"));
+            }
+        }
+        Ok(())
+    }
+
+    fn not_finite(self, what: &'static str, element: usize) -> AccelError {
+        AccelError::NotFinite { aggregate: self.aggregate, geometry: self.geometry, element, what }
+    }
+
+    fn fault(self, what: &'static str, element: usize, fault: &'static str) -> AccelError {
+        AccelError::BadPrimitive { aggregate: self.aggregate, geometry: self.geometry, element, what, fault }
+    }
 }

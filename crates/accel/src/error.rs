@@ -5,25 +5,49 @@ use core::fmt;
 /// What is wrong with a scene, and where. `aggregate` is `None` for the world itself.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AccelError {
-    /// A vertex, sphere or user bound is NaN or infinite, or a radius is negative.
+    /// A vertex, a number of a primitive, or a user shape's bound is NaN, or infinite where it must not be.
     NotFinite {
         /// Where; `None` is the world itself.
         aggregate: Option<usize>,
         /// Index of the geometry there.
         geometry: usize,
-        /// Index of the vertex, sphere or user primitive.
+        /// Index of the vertex, curve point or primitive.
         element: usize,
         /// What it is.
         what: &'static str,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A primitive that cannot be: a negative radius, a disk without a normal.
+    BadPrimitive {
+        /// Where; `None` is the world itself.
+        aggregate: Option<usize>,
+        /// Index of the geometry there.
+        geometry: usize,
+        /// Index of the primitive or curve point.
+        element: usize,
+        /// What it is.
+        what: &'static str,
+        /// What it has that it must not have.
+        fault: &'static str,
+    },
+    /// Moving triangles without two keys, or with keys of different lengths.
+    BadKeys {
+        /// Where; `None` is the world itself.
+        aggregate: Option<usize>,
+        /// Index of the geometry there.
+        geometry: usize,
+        /// Number of vertices at each key.
+        lengths: Vec<usize>,
+    },
+    /// A triangle, quad or curve segment names a vertex that does not exist.
     IndexOutOfRange {
         /// Where; `None` is the world itself.
         aggregate: Option<usize>,
         /// Index of the geometry there.
         geometry: usize,
-        /// Index of the triangle.
-        triangle: usize,
+        /// What names it.
+        what: &'static str,
+        /// Index of the primitive.
+        element: usize,
         /// The vertex it names.
         index: u32,
         /// How many vertices there are.
@@ -92,9 +116,17 @@ impl fmt::Display for AccelError {
             Self::NotFinite { aggregate, geometry, element, what } => {
                 write!(f, "{what} {element} of geometry {geometry} in {} is not a finite number", place(aggregate))
             }
-            Self::IndexOutOfRange { aggregate, geometry, triangle, index, vertices } => write!(
+            Self::BadPrimitive { aggregate, geometry, element, what, fault } => {
+                write!(f, "{what} {element} of geometry {geometry} in {} has {fault}", place(aggregate))
+            }
+            Self::BadKeys { aggregate, geometry, lengths } => write!(
                 f,
-                "triangle {triangle} of geometry {geometry} in {} uses vertex {index}, but there are {vertices}",
+                "geometry {geometry} in {} moves: it needs two or more keys with as many vertices each, and has {lengths:?}",
+                place(aggregate)
+            ),
+            Self::IndexOutOfRange { aggregate, geometry, what, element, index, vertices } => write!(
+                f,
+                "{what} {element} of geometry {geometry} in {} uses vertex {index}, but there are {vertices}",
                 place(aggregate)
             ),
             Self::TooManyPrimitives { aggregate, count, limit } => {

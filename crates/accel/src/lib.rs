@@ -1,4 +1,5 @@
-//! Rays against triangles, spheres and user shapes, with instances and motion. Knows nothing of materials or files, and
+//! Rays against triangles, quads, spheres, disks, cylinders, round curves and user shapes, with instances of instances and
+//! motion. Knows nothing of materials or files, and
 //! owns no threads: the caller lends an [`Executor`].
 //!
 //! **A hit has one definition**, shared by every structure. A primitive is hit when its own test passes ([`triangle`],
@@ -29,14 +30,20 @@ mod brute_force;
 mod build;
 mod bvh2;
 mod check;
+pub mod curve;
+pub mod cylinder;
+pub mod disk;
 mod error;
 mod executor;
 mod hit;
 mod instance;
 mod kind;
+mod local_ray;
+pub mod moving;
 mod path;
 mod prepared_ray;
 mod primitive;
+pub mod quad;
 mod query;
 pub mod ray_sets;
 mod record;
@@ -56,6 +63,7 @@ pub use path::{InstancePath, MAX_NESTING, NO_INSTANCE};
 pub use prepared_ray::PreparedRay;
 pub use query::{HitFilter, Query};
 pub use scene_geometry::{Aggregate, Geometry, Instance, SceneGeometry, Shape, Sphere, UserShape};
+pub use scene_geometry::{CurvePoint, Cylinder, Disk};
 
 #[cfg(doc)]
 use kirkas_geometry::Bounds3;

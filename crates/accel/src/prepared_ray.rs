@@ -52,6 +52,17 @@ impl PreparedRay {
         })
     }
 
+    /// A crossing, clamped into what `Bounds3::intersect` gave for its bounds, if it may be a hit.
+    #[inline]
+    pub(crate) fn accept(&self, t: f64, inside: (f32, f32)) -> Option<f32> {
+        // NaN is not accepted.
+        if !(t > f64::from(self.t_min) && t < f64::from(self.t_max)) {
+            return None;
+        }
+        let t = clamp(t as f32, inside);
+        self.admits(t).then_some(t)
+    }
+
     /// True when `t` may be a hit.
     #[inline]
     pub(crate) fn admits(&self, t: f32) -> bool {

@@ -184,7 +184,7 @@ fn normal(accel: &Accel, ray: &Ray, hit: &Hit) -> Option<Vec3> {
             let p = object_from_world.transform_point3(ray.at(hit.t).as_dvec3());
             p.as_vec3() - spheres[hit.primitive as usize].center
         }
-        Shape::User(_) => return None,
+        _ => return None,
     };
     Some(transform_normal(&object_from_world, normal.as_dvec3()).normalize().as_vec3())
 }

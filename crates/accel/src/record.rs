@@ -61,7 +61,8 @@ pub(crate) struct Record {
 pub(crate) enum RecordKind {
     Triangle,
     Sphere,
-    User,
+    /// Of any other shape: the test looks it up.
+    Other,
     Instance,
 }
 
@@ -77,7 +78,7 @@ impl Record {
                 let s = &spheres[primitive as usize];
                 (RecordKind::Sphere, [s.center.to_array(), [s.radius, 0.0, 0.0], [0.0; 3]])
             }
-            Some(Shape::User(_)) => (RecordKind::User, [[0.0; 3]; 3]),
+            Some(_) => (RecordKind::Other, [[0.0; 3]; 3]),
         };
         Record { corners, geometry, primitive, kind }
     }
@@ -97,19 +98,23 @@ impl Record {
                 search.counters.primitives_tested += 1;
                 sphere::intersect(&self.sphere(), ray, |t| search.offer(level, geometry, index, (t, 0.0, 0.0)));
             }
-            RecordKind::User => {
+            RecordKind::Other => {
                 search.counters.primitives_tested += 1;
-                if let Shape::User(user) = &level.geometries[geometry as usize].shape {
-                    let mut offer = |t, u, v| search.offer(level, geometry, index, (t, u, v));
-                    primitive::intersect_user(&**user, index, ray, &mut offer);
-                }
+                test_other(level, geometry, index, ray, search);
             }
             RecordKind::Instance => enter(ray, search, index),
         }
     }
 
     #[inline]
-    pub fn sphere(&self) -> Sphere {
+    fn sphere(&self) -> Sphere {
         Sphere { center: Vec3::from_array(self.corners[0]), radius: self.corners[1][0] }
     }
+}
+
+#[inline(never)]
+fn test_other<const ANY: bool>(level: Level, geometry: u32, index: u32, ray: &PreparedRay, search: &mut Search<ANY>) {
+    let shape = &level.geometries[geometry as usize].shape;
+    let offer = |t, u, v| search.offer(level, geometry, index, (t, u, v));
+    primitive::intersect(shape, index, ray, level.shutter, offer);
 }

@@ -12,7 +12,43 @@ pub struct Sphere {
     pub radius: f32,
 }
 
-/// Primitives of one type.
+/// A flat disk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disk {
+    /// Its center.
+    pub center: Vec3,
+    /// Across it, of any length but 0.
+    pub normal: Vec3,
+    /// Its radius, 0 or more.
+    pub radius: f32,
+}
+
+/// The lateral surface of a cylinder, open at both ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// The middles of its ends.
+    pub ends: [Vec3; 2],
+    /// Its radius, 0 or more.
+    pub radius: f32,
+}
+
+/// A point of a curve, with the curve's thickness there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Where it is.
+    pub position: Vec3,
+    /// Half the thickness, 0 or more.
+    pub radius: f32,
+}
+
+impl CurvePoint {
+    /// The ball that the curve fills at this point.
+    pub(crate) fn ball(&self) -> Sphere {
+        Sphere { center: self.position, radius: self.radius }
+    }
+}
+
+/// Primitives of one type. What `u` and `v` of a hit mean stands at the head of each type's module.
 #[derive(Clone)]
 pub enum Shape {
     /// Triangles over shared vertices. Two-sided; those without area are never hit.
@@ -21,6 +57,32 @@ pub enum Shape {
         positions: Arc<Vec<Vec3>>,
         /// Three vertices per triangle.
         indices: Arc<Vec<[u32; 3]>>,
+    },
+    /// Triangles whose vertices move. They are those of [`Shape::Triangles`] at each moment.
+    MovingTriangles {
+        /// The vertices at two or more keys, which divide the scene's shutter evenly, the first when it opens and the last
+        /// when it closes. In between they move on straight lines.
+        keys: Arc<Vec<Vec<Vec3>>>,
+        /// Three vertices per triangle.
+        indices: Arc<Vec<[u32; 3]>>,
+    },
+    /// Quads over shared vertices, each two triangles: see [`crate::quad`]. Two-sided.
+    Quads {
+        /// The vertices.
+        positions: Arc<Vec<Vec3>>,
+        /// Four vertices per quad, in order around it.
+        indices: Arc<Vec<[u32; 4]>>,
+    },
+    /// Disks. Two-sided: see [`crate::disk`].
+    Disks(Arc<Vec<Disk>>),
+    /// Open cylinders. Hit from outside and from inside: see [`crate::cylinder`].
+    Cylinders(Arc<Vec<Cylinder>>),
+    /// Round curves of straight segments: see [`crate::curve`].
+    Curves {
+        /// The points of all curves.
+        points: Arc<Vec<CurvePoint>>,
+        /// For each segment its first point; its second is the one after.
+        segments: Arc<Vec<u32>>,
     },
     /// Spheres. Hit from outside and from inside.
     Spheres(Arc<Vec<Sphere>>),
@@ -32,7 +94,11 @@ impl Shape {
     /// Number of primitives.
     pub fn len(&self) -> usize {
         match self {
-            Shape::Triangles { indices, .. } => indices.len(),
+            Shape::Triangles { indices, .. } | Shape::MovingTriangles { indices, .. } => indices.len(),
+            Shape::Quads { indices, .. } => indices.len(),
+            Shape::Disks(disks) => disks.len(),
+            Shape::Cylinders(cylinders) => cylinders.len(),
+            Shape::Curves { segments, .. } => segments.len(),
             Shape::Spheres(spheres) => spheres.len(),
             Shape::User(user) => user.len(),
         }

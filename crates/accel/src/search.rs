@@ -15,6 +15,8 @@ pub(crate) struct Level<'a> {
     pub instances: u32,
     /// The instances they stand in.
     pub instance: InstancePath,
+    /// The scene's.
+    pub shutter: (f64, f64),
 }
 
 /// Searches the instance of this index with the ray of the level that holds it.

@@ -2,7 +2,7 @@
 //! Intersection", Ray Tracing Gems, chapter 7): the discriminant from the ray's distance to the center, the two roots
 //! without cancellation.
 
-use crate::prepared_ray::{PreparedRay, clamp};
+use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::Sphere;
 use kirkas_geometry::{Bounds3, DVec3};
 
@@ -31,11 +31,8 @@ pub fn intersect(sphere: &Sphere, ray: &PreparedRay, mut visit: impl FnMut(f32) 
     let q = half_b + (a * reach2).sqrt().copysign(half_b);
     let (t0, t1) = if half_b < 0.0 { (q / a, c / q) } else { (c / q, q / a) };
     for t in [t0, t1] {
-        if t > f64::from(ray.t_min) && t < f64::from(ray.t_max) {
-            let t = clamp(t as f32, inside);
-            if ray.admits(t) && visit(t) {
-                return;
-            }
+        if ray.accept(t, inside).is_some_and(&mut visit) {
+            return;
         }
     }
 }

@@ -242,7 +242,7 @@ impl<'a, const ANY: bool> Walker<'a, ANY> {
                 self.search.counters.primitives_tested += 1;
                 let shape = &ground.level.geometries[geometry as usize].shape;
                 let offer = |t, u, v| self.search.offer(ground.level, geometry, index, (t, u, v));
-                primitive::intersect(shape, index, &self.ray, offer);
+                primitive::intersect(shape, index, &self.ray, ground.level.shutter, offer);
             }
         }
         self.lower_limit(ground);

@@ -150,6 +150,46 @@ fn an_axis_aligned_grid_is_hit_on_every_line_and_crossing() {
     assert_eq!(assert_agreement(&scene, &within), 0, "rays within the plane");
 }
 
+/// Disks, cylinders, curves, quads and moving triangles, many of them degenerate or coincident.
+fn solids(r: &mut Random, n: usize) -> Vec<Geometry> {
+    let radius = |r: &mut Random| [0.0, r.unit() * 0.4, 0.25][r.below(3) as usize];
+    let normal = |r: &mut Random| [Vec3::X, r.cube(), Vec3::Z * -1e-9][r.below(3) as usize];
+    let points: Vec<Vec3> = (0..n).map(|_| point(r)).collect();
+    let curve_points = points.iter().map(|&position| CurvePoint { position, radius: radius(r) }).collect();
+    let disks = points.iter().map(|&center| Disk { center, normal: normal(r), radius: radius(r) }).collect();
+    let cylinders = points.iter().map(|&a| Cylinder { ends: [a, a + normal(r)], radius: radius(r) }).collect();
+    let index = |r: &mut Random| r.below(n as u32);
+    let quads = (0..n).map(|_| [index(r), index(r), index(r), index(r)]).collect();
+    let faces = (0..n).map(|_| [index(r), index(r), index(r)]).collect();
+    let keys = vec![points.clone(), points.iter().rev().copied().collect(), points.clone()];
+    [
+        Shape::Disks(Arc::new(disks)),
+        Shape::Cylinders(Arc::new(cylinders)),
+        Shape::Curves { points: Arc::new(curve_points), segments: Arc::new((0..n as u32 - 1).collect()) },
+        Shape::Quads { positions: Arc::new(points), indices: Arc::new(quads) },
+        Shape::MovingTriangles { keys: Arc::new(keys), indices: Arc::new(faces) },
+    ]
+    .map(|shape| Geometry { opaque: r.below(2) == 0, ..geometry(shape) })
+    .into()
+}
+
+#[test]
+fn every_structure_equals_brute_force_on_every_shape() {
+    let (mut rays_cast, mut hits) = (0, 0);
+    for seed in 0..60 {
+        let r = &mut Random::new(500 + seed);
+        let (mut scene, corners) = scene(r, [2, 9, 40][seed as usize % 3]);
+        scene.world = solids(r, [2, 9, 40][seed as usize % 3]);
+        for a in &mut scene.aggregates {
+            a.geometries.extend(solids(r, 6));
+        }
+        let rays: Vec<Ray> = (0..500).map(|_| ray(r, &corners)).collect();
+        hits += assert_agreement(&scene, &rays);
+        rays_cast += 2 * rays.len();
+    }
+    assert!(hits * 5 > rays_cast && hits < rays_cast, "{hits} of {rays_cast}");
+}
+
 /// On every platform, natively or as wasm: a changed hash is a changed definition of a hit (or fused arithmetic).
 #[test]
 fn hits_have_the_same_bits_everywhere() {

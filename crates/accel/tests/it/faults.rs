@@ -1,6 +1,7 @@
 //! What a user can get wrong is an error, never a panic.
 
 use crate::common::{Boxes, geometry, triangles, world};
+use crate::solids;
 use kirkas_accel::*;
 use kirkas_geometry::{AnimatedTransform, Bounds3, DAffine3, DMat3, Vec3};
 use std::sync::Arc;
@@ -27,6 +28,35 @@ fn each_fault_is_named_with_its_place() {
     for radius in [-1.0, f32::INFINITY] {
         let ball = Shape::Spheres(Arc::new(vec![Sphere { center: Vec3::ZERO, radius }]));
         assert!(error(world(vec![ball])).starts_with("sphere 0 of geometry 0"));
+    }
+    let texts = [
+        (solids::disk(Vec3::X, Vec3::ZERO, 1.0), "disk 0 of geometry 0 in the world has a normal of length 0"),
+        (solids::disk(Vec3::X, Vec3::Z, -1.0), "disk 0 of geometry 0 in the world has a negative radius"),
+        (solids::disk(Vec3::X, Vec3::NAN, 1.0), "disk 0 of geometry 0 in the world is not a finite number"),
+        (solids::cylinder(Vec3::X, Vec3::Z, -2.0), "cylinder 0 of geometry 0 in the world has a negative radius"),
+        (
+            solids::cylinder(Vec3::X, Vec3::INFINITY, 1.0),
+            "cylinder 0 of geometry 0 in the world is not a finite number",
+        ),
+        (
+            solids::curve(&[(Vec3::X, 1.0), (Vec3::Y, -1.0)]),
+            "curve point 1 of geometry 0 in the world has a negative radius",
+        ),
+        (
+            Shape::Curves { points: Arc::new(vec![]), segments: Arc::new(vec![u32::MAX]) },
+            "curve segment 0 of geometry 0 in the world uses vertex 4294967295, but there are 0",
+        ),
+        (
+            Shape::Quads { positions: Arc::new(vec![Vec3::X; 3]), indices: Arc::new(vec![[0, 1, 2, 3]]) },
+            "quad 0 of geometry 0 in the world uses vertex 3, but there are 3",
+        ),
+        (
+            Shape::MovingTriangles { keys: Arc::new(vec![vec![Vec3::X; 3], vec![]]), indices: Arc::default() },
+            "geometry 0 in the world moves: it needs two or more keys with as many vertices each, and has [3, 0]",
+        ),
+    ];
+    for (shape, text) in texts {
+        assert_eq!(error(world(vec![shape])), text);
     }
     let boxes = Boxes(vec![Bounds3 { min: Vec3::ZERO, max: Vec3::NAN }]);
     assert!(error(world(vec![Shape::User(Arc::new(boxes))])).starts_with("user shape 0"));

@@ -1,0 +1,255 @@
+//! Disks, cylinders, curves and quads against closed forms, and against where they were aimed at.
+
+use crate::common::*;
+use kirkas_accel::*;
+use kirkas_geometry::{DVec3, Ray, Vec3};
+use std::sync::{Arc, Mutex};
+
+pub fn disk(center: Vec3, normal: Vec3, radius: f32) -> Shape {
+    Shape::Disks(Arc::new(vec![Disk { center, normal, radius }]))
+}
+
+pub fn cylinder(a: Vec3, b: Vec3, radius: f32) -> Shape {
+    Shape::Cylinders(Arc::new(vec![Cylinder { ends: [a, b], radius }]))
+}
+
+pub fn curve(points: &[(Vec3, f32)]) -> Shape {
+    let segments = (0..points.len() as u32 - 1).collect();
+    let points = points.iter().map(|&(position, radius)| CurvePoint { position, radius }).collect();
+    Shape::Curves { points: Arc::new(points), segments: Arc::new(segments) }
+}
+
+pub fn quad(corners: [Vec3; 4]) -> Shape {
+    Shape::Quads { positions: Arc::new(corners.to_vec()), indices: Arc::new(vec![[0, 1, 2, 3]]) }
+}
+
+/// Notes every crossing and refuses it.
+struct Note(Mutex<Vec<Hit>>);
+
+impl HitFilter for Note {
+    fn accept(&self, _: usize, _: &Ray, hit: &Hit) -> bool {
+        self.0.lock().unwrap().push(*hit);
+        false
+    }
+}
+
+/// Every crossing with one shape, nearest first.
+fn crossings(shape: Shape, ray: &Ray) -> Vec<Hit> {
+    let mut scene = world(vec![shape]);
+    scene.world[0].opaque = false;
+    let note = Note(Mutex::default());
+    build(AccelKind::BruteForce, &scene).closest_hit(ray, Query::filtered(&note), 0, &mut Counters::default());
+    note.0.into_inner().unwrap()
+}
+
+fn ts(shape: Shape, ray: &Ray) -> Vec<f32> {
+    crossings(shape, ray).iter().map(|h| h.t).collect()
+}
+
+#[test]
+fn disks_are_hit_within_the_rim_from_both_sides() {
+    let flat = || disk(Vec3::new(1.0, 0.0, 0.0), Vec3::Z * -3.0, 2.0);
+    let down = |x: f32, z: f32| Ray::new(Vec3::new(x, 0.0, z), Vec3::Z * -z.signum());
+    let hit = crossings(flat(), &down(2.0, 4.0))[0];
+    assert_eq!((hit.t, hit.u, hit.v), (4.0, 0.5, 0.0));
+    assert_eq!(ts(flat(), &down(2.0, -4.0)), [4.0]);
+    assert_eq!(ts(flat(), &down(3.0_f32.next_down(), 4.0)), [4.0]);
+    assert!(ts(flat(), &down(3.0, 4.0)).is_empty(), "the rim");
+    assert!(ts(disk(Vec3::X, Vec3::Z, 0.0), &down(1.0, 4.0)).is_empty(), "a disk without size");
+    let within = Ray::new(Vec3::new(-9.0, 0.0, 0.0), Vec3::X);
+    assert!(ts(flat(), &within).is_empty(), "in its plane");
+    let leaving = Ray { t_min: -1.0, ..Ray::new(Vec3::X, Vec3::new(0.3, 0.2, 1.0)) };
+    assert!(ts(flat(), &leaving).is_empty(), "from its plane");
+}
+
+#[test]
+fn cylinders_are_open_and_hit_from_inside() {
+    let tube = || cylinder(Vec3::ZERO, Vec3::Z * 4.0, 1.0);
+    let across = Ray::new(Vec3::new(5.0, 0.0, 1.0), -Vec3::X);
+    let hits = crossings(tube(), &across);
+    assert_eq!(hits.iter().map(|h| (h.t, h.u)).collect::<Vec<_>>(), [(4.0, 0.25), (6.0, 0.25)]);
+    assert_eq!(ts(tube(), &Ray::new(Vec3::new(0.0, 0.0, 1.0), Vec3::Y)), [1.0], "from inside");
+    assert!(ts(tube(), &Ray::new(Vec3::new(0.5, 0.0, -9.0), Vec3::Z)).is_empty(), "through, along the axis");
+    assert!(ts(tube(), &Ray::new(Vec3::new(1.0, 0.0, -9.0), Vec3::Z)).is_empty(), "within the surface");
+    assert!(ts(tube(), &Ray::new(Vec3::new(5.0, 1.0, 2.0), -Vec3::X)).is_empty(), "a tangent");
+    assert_eq!(ts(tube(), &Ray::new(Vec3::new(5.0, 0.0, 4.5), Vec3::new(-1.0, 0.0, -0.1))), [6.0]);
+    let slanted = Ray::new(Vec3::new(3.0, 0.0, 6.0), Vec3::new(-1.0, 0.0, -1.0));
+    assert_eq!(ts(tube(), &slanted), [2.0, 4.0]);
+    let over_the_end = Ray::new(Vec3::new(3.0, 0.0, 7.0), Vec3::new(-1.0, 0.0, -1.0));
+    assert_eq!(ts(tube(), &over_the_end), [4.0], "in at the open end");
+    let start = Ray::new(Vec3::new(0.6, 0.8, 1.0) * Vec3::new(5.0, 5.0, 1.0), -Vec3::X);
+    assert_eq!(ts(cylinder(Vec3::ZERO, Vec3::Z * 4.0, 5.0), &start), [6.0], "leaves for good, meets the far side");
+    assert!(ts(cylinder(Vec3::ONE, Vec3::ONE, 1.0), &across).is_empty(), "without length");
+    assert!(ts(cylinder(Vec3::ZERO, Vec3::Z, 0.0), &across).is_empty(), "without radius");
+}
+
+#[test]
+fn curves_are_hulls_of_balls() {
+    let tube = || curve(&[(Vec3::ZERO, 1.0), (Vec3::Z * 4.0, 1.0)]);
+    let hit = crossings(tube(), &Ray::new(Vec3::new(5.0, 0.0, 1.0), -Vec3::X))[0];
+    assert_eq!((hit.t, hit.u, hit.v), (4.0, 0.25, 0.0));
+    assert_eq!(ts(tube(), &Ray::new(Vec3::new(0.0, 0.0, -9.0), Vec3::Z)), [8.0, 14.0], "through both caps");
+    assert_eq!(ts(tube(), &Ray::new(Vec3::Z * 2.0, Vec3::Y)), [1.0], "from inside");
+    assert!(ts(tube(), &Ray::new(Vec3::new(5.0, 1.0, 2.0), -Vec3::X)).is_empty(), "a tangent");
+    let leaving = Ray::new(Vec3::new(1.0, 0.0, 2.0), Vec3::new(1.0, 0.0, 0.5));
+    assert!(ts(tube(), &leaving).is_empty(), "from the surface, outwards");
+    assert_eq!(ts(tube(), &Ray { direction: -Vec3::X, ..leaving }), [2.0], "from the surface, inwards");
+    // The apex half-angle of a cone from radius 3 to nothing over a length of 5 has the sine 3/5.
+    let spike = || curve(&[(Vec3::ZERO, 3.0), (Vec3::Z * 5.0, 0.0)]);
+    let hit = crossings(spike(), &Ray::new(Vec3::new(9.0, 0.0, 3.4), -Vec3::X))[0];
+    assert_eq!((hit.t, hit.u), (7.8, 0.5), "the ball of radius 1.5 touches the cone at (1.2, 0, 3.4)");
+    // One ball holds the other.
+    let egg = || curve(&[(Vec3::ZERO, 2.0), (Vec3::Z * 0.5, 1.0)]);
+    assert_eq!(ts(egg(), &Ray::new(Vec3::Z * 9.0, -Vec3::Z)), [7.0, 11.0]);
+    let dot = curve(&[(Vec3::ZERO, 1.0), (Vec3::ZERO, 1.0)]);
+    assert_eq!(ts(dot, &Ray::new(Vec3::Z * 9.0, -Vec3::Z)), [8.0, 10.0]);
+    let thread = curve(&[(Vec3::ZERO, 0.0), (Vec3::Z, 0.0)]);
+    assert!(ts(thread, &Ray::new(Vec3::new(1.0, 0.0, 0.5), -Vec3::X)).is_empty(), "without thickness");
+}
+
+#[test]
+fn quads_count_u_and_v_from_their_first_corner_and_are_met_once_on_the_fold() {
+    let square = || quad([Vec3::ZERO, Vec3::X * 4.0, Vec3::new(4.0, 4.0, 0.0), Vec3::Y * 4.0]);
+    for (x, y) in [(1.0, 1.0), (3.0, 2.0), (1.0, 3.0), (3.0, 1.0), (2.0, 2.0), (0.0, 4.0)] {
+        let hits = crossings(square(), &Ray::new(Vec3::new(x, y, 2.0), -Vec3::Z));
+        assert_eq!(hits.iter().map(|h| (h.t, h.u, h.v)).collect::<Vec<_>>(), [(2.0, x / 4.0, y / 4.0)]);
+    }
+    let folded = quad([Vec3::new(0.0, 0.0, 2.0), Vec3::X, Vec3::new(1.0, 1.0, 2.0), Vec3::Y]);
+    assert_eq!(ts(folded, &Ray::new(Vec3::new(-1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, 0.0))), [1.25, 1.75]);
+}
+
+/// A shape of some size and place, and a point of its surface that is off the edges.
+fn shape_and_point(r: &mut Random, scale: f32) -> (Shape, DVec3) {
+    let (a, b) = (r.cube() * scale, r.cube() * scale);
+    let (thick, thin) = ((0.05 + r.unit()) * scale, (0.02 + 0.3 * r.unit()) * scale);
+    let axis = (b - a).as_dvec3();
+    let side = axis.cross(r.cube().as_dvec3()).normalize();
+    let along = 0.01 + 0.98 * f64::from(r.unit());
+    match r.below(4) {
+        0 => (disk(a, b - a, thick), a.as_dvec3() + side * f64::from(thick) * (0.99 * along)),
+        1 => (cylinder(a, b, thick), a.as_dvec3() + axis * along + side * f64::from(thick)),
+        2 => {
+            // Where the ball at `along` touches the surface: the normal leans against the growth.
+            let (length, growth) = (axis.length(), f64::from(thick) - f64::from(thin));
+            let sine = growth / length;
+            if sine.abs() > 0.99 {
+                return shape_and_point(r, scale);
+            }
+            let normal = side * (1.0 - sine * sine).sqrt() - axis * (sine / length);
+            let radius = f64::from(thin) + growth * along;
+            (curve(&[(a, thin), (b, thick)]), a.as_dvec3() + axis * along + normal * radius)
+        }
+        _ => {
+            let (c, d) = (r.cube() * scale, r.cube() * scale);
+            let [p, q, s] = [a, b, d].map(|v| v.as_dvec3());
+            let (u, v) = (along * 0.5, 0.01 + 0.48 * f64::from(r.unit()));
+            (quad([a, b, c, d]), p + (q - p) * u + (s - p) * v)
+        }
+    }
+}
+
+#[test]
+fn what_a_ray_is_aimed_at_it_meets_at_every_scale_and_from_far() {
+    let r = &mut Random::new(31);
+    let (mut aimed, mut grazing) = (0, 0);
+    for _ in 0..40_000 {
+        let scale = [1e-12, 1e-3, 1.0, 1e5, 1e12][r.below(5) as usize];
+        let (shape, target) = shape_and_point(r, scale);
+        let far = [1.0, 30.0, 1000.0][r.below(3) as usize];
+        let origin = target.as_vec3() + r.cube() * (scale * far);
+        let direction = (target - origin.as_dvec3()).as_vec3();
+        let ray = Ray::new(origin, direction);
+        // f32 moves the ray sideways by some roundings of its length; at a slant that is more along the ray.
+        let hits = crossings(shape.clone(), &ray);
+        let met = hits.iter().any(|h| (f64::from(h.t) - 1.0).abs() < 1e-4);
+        aimed += 1;
+        assert!(met || is_grazing(&shape, &ray, target), "{hits:?}\n{ray:?}\n{target}\n{}", text(&shape));
+        grazing += usize::from(!met);
+    }
+    assert!(grazing * 50 < aimed, "{grazing} of {aimed}");
+}
+
+fn text(shape: &Shape) -> String {
+    match shape {
+        Shape::Disks(all) => format!("{all:?}"),
+        Shape::Cylinders(all) => format!("{all:?}"),
+        Shape::Curves { points, .. } => format!("{points:?}"),
+        Shape::Quads { positions, .. } => format!("{positions:?}"),
+        _ => "another".into(),
+    }
+}
+
+/// True when the surface at `target` is seen at a slant of less than a few thousandths.
+fn is_grazing(shape: &Shape, ray: &Ray, target: DVec3) -> bool {
+    let d = ray.direction.as_dvec3().normalize();
+    let normal = match shape {
+        Shape::Disks(disks) => disks[0].normal.as_dvec3(),
+        Shape::Cylinders(all) => {
+            let [a, b] = all[0].ends.map(|e| e.as_dvec3());
+            (target - a) - (b - a) * ((target - a).dot(b - a) / (b - a).dot(b - a))
+        }
+        Shape::Curves { points, .. } => {
+            let [a, b] = [0, 1].map(|i: usize| points[i].position.as_dvec3());
+            let axis = (b - a).normalize();
+            let out = (target - a) - axis * (target - a).dot(axis);
+            let sine = f64::from(points[1].radius - points[0].radius) / (b - a).length();
+            out.normalize() * (1.0 - sine * sine).sqrt() - axis * sine
+        }
+        Shape::Quads { positions, .. } => {
+            let [a, b, d] = [0, 1, 3].map(|i: usize| positions[i].as_dvec3());
+            (b - a).cross(d - a)
+        }
+        _ => DVec3::ZERO,
+    };
+    normal.normalize().dot(d).abs() < 0.02
+}
+
+/// The distance from the hull of two balls, by search.
+fn distance(p: DVec3, [a, b]: [(Vec3, f32); 2]) -> f64 {
+    let at = |s: f64| {
+        let center = a.0.as_dvec3() * (1.0 - s) + b.0.as_dvec3() * s;
+        (p - center).length() - (f64::from(a.1) * (1.0 - s) + f64::from(b.1) * s)
+    };
+    let (mut lo, mut hi) = (0.0, 1.0);
+    for _ in 0..200 {
+        let (x, y) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
+        if at(x) < at(y) { hi = y } else { lo = x }
+    }
+    at(0.5 * (lo + hi))
+}
+
+#[test]
+fn curves_are_where_their_distance_is_nothing() {
+    let r = &mut Random::new(8);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..4000 {
+        let size = [0.0, 0.2, 1.0][r.below(3) as usize];
+        let ends = [(r.cube(), r.unit() * size), (r.cube(), r.unit() * 0.5)];
+        let origin = r.cube() * 4.0;
+        let ray = Ray::new(origin, ends[0].0.lerp(ends[1].0, r.unit()) + r.cube() * 0.7 - origin);
+        let (o, d) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        // March with steps as long as the distance: never past the surface.
+        let inside = distance(o, ends) < 0.0;
+        let (mut t, mut least) = (0.0, f64::INFINITY);
+        for _ in 0..3000 {
+            let off = distance(o + d * t, ends) * if inside { -1.0 } else { 1.0 };
+            least = least.min(off);
+            t += off.max(0.0) / d.length();
+            if off < 1e-10 || t * d.length() > 20.0 {
+                break;
+            }
+        }
+        match ts(curve(&ends), &ray).first() {
+            Some(&first) => {
+                hits += 1;
+                assert!((f64::from(first) - t).abs() * d.length() < 1e-3, "{first} {t} {ray:?} {ends:?}");
+                assert!(distance(o + d * f64::from(first), ends).abs() < 2e-6, "{first} {t} {ray:?} {ends:?}");
+            }
+            None => {
+                misses += 1;
+                assert!(least > 1e-10 || least > -1e-9 && t * d.length() > 20.0, "missed: {least} {ray:?} {ends:?}");
+            }
+        }
+    }
+    assert!(hits > 1000 && misses > 1000, "{hits} {misses}");
+}
