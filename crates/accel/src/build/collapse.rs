@@ -45,6 +45,12 @@ impl Collapse {
         Collapse { entries }
     }
 
+    /// Cost of the whole wide tree, times half the area of boxes; for tests to compare trees by.
+    #[cfg(test)]
+    pub fn cost(&self) -> f32 {
+        self.entries.first().map_or(0.0, |e| e.cost[0])
+    }
+
     /// What the wide tree begins with: a leaf, or a binary node to ask the children of.
     pub fn root(&self, tree: &BinaryTree) -> Option<Child> {
         tree.root.map(|root| self.as_one(tree, root))

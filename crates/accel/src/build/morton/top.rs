@@ -1,0 +1,109 @@
+//! The tree over the roots of all groves.
+
+use super::clusters::Grove;
+use crate::Executor;
+use crate::build::binary::{BinaryTree, Child};
+use crate::build::binned_sah;
+use crate::build::reference::{Box4, Reference};
+
+/// A part of the tree.
+pub(super) struct Part {
+    pub what: What,
+    pub around: Box4,
+    /// References below.
+    pub references: usize,
+    /// Leaves below.
+    pub leaves: usize,
+    /// Levels above the roots of groves.
+    levels: usize,
+}
+
+pub(super) enum What {
+    /// Grove and cluster.
+    Root(usize, u32),
+    Pair(Box<[Part; 2]>),
+}
+
+/// Split by the surface-area heuristic, or halve along the curve where that takes more than `room` levels.
+pub(super) fn over(groves: &[Grove], room: usize, executor: &dyn Executor) -> Part {
+    let roots: Vec<(usize, u32)> =
+        groves.iter().enumerate().flat_map(|(g, grove)| grove.roots.iter().map(move |&c| (g, c))).collect();
+    let part = |&(grove, root): &(usize, u32)| {
+        let c = &groves[grove].clusters[root as usize];
+        let (references, leaves) = (c.references as usize, c.leaves as usize);
+        Part { what: What::Root(grove, root), around: c.around, references, leaves, levels: 0 }
+    };
+    let reference = |(i, root): (usize, &(usize, u32))| Reference::new(&part(root).around.to_bounds(), 0, i as u32);
+    let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), executor);
+    let top = of_tree(&tree, tree.root.expect("groves have roots"), &|i| part(&roots[i]));
+    if top.levels <= room { top } else { halves(&roots, &part) }
+}
+
+fn of_tree(tree: &BinaryTree, child: Child, part: &dyn Fn(usize) -> Part) -> Part {
+    if child.is_leaf() {
+        let (first, count) = child.run();
+        return merged(tree.references[first..first + count].iter().map(|r| part(r.ids().1 as usize)).collect());
+    }
+    let [a, b] = tree.nodes[child.index()].children;
+    pair(of_tree(tree, a, part), of_tree(tree, b, part))
+}
+
+/// The few made one: always the two that make the smallest box.
+fn merged(mut parts: Vec<Part>) -> Part {
+    loop {
+        let mut best = (f32::INFINITY, 0, 0);
+        for b in 1..parts.len() {
+            for a in 0..b {
+                let area = parts[a].around.union(parts[b].around).half_area();
+                if area < best.0 {
+                    best = (area, a, b);
+                }
+            }
+        }
+        let last = parts.swap_remove(best.2);
+        if parts.is_empty() {
+            return last;
+        }
+        let first = parts.swap_remove(best.1);
+        parts.push(pair(first, last));
+    }
+}
+
+fn halves(roots: &[(usize, u32)], part: &dyn Fn(&(usize, u32)) -> Part) -> Part {
+    match roots {
+        [one] => part(one),
+        more => {
+            let (a, b) = more.split_at(more.len() / 2);
+            pair(halves(a, part), halves(b, part))
+        }
+    }
+}
+
+fn pair(a: Part, b: Part) -> Part {
+    let around = a.around.union(b.around);
+    let (references, leaves) = (a.references + b.references, a.leaves + b.leaves);
+    let levels = 1 + a.levels.max(b.levels);
+    Part { what: What::Pair(Box::new([a, b])), around, references, leaves, levels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{codes, leaves};
+    use super::*;
+    use crate::Serial;
+    use crate::build::testing::random_boxes;
+
+    #[test]
+    fn where_the_heuristic_runs_too_deep_the_roots_are_halved() {
+        let references = random_boxes(30_000, 4);
+        let keys = codes::sorted(&references, &Serial);
+        let mut groves: Vec<Grove> = leaves::cuts(&keys, 10_000).into_iter().map(Grove::new).collect();
+        groves.iter_mut().for_each(|grove| grove.grow(&keys, &references));
+        let roots = groves.iter().map(|g| g.roots.len()).sum::<usize>();
+        let least = roots.next_power_of_two().ilog2() as usize;
+        let [free, tight] = [100, least].map(|room| over(&groves, room, &Serial));
+        assert!(free.levels > least);
+        assert_eq!(tight.levels, least);
+        assert_eq!((tight.references, tight.leaves), (free.references, free.leaves));
+    }
+}
