@@ -2,31 +2,44 @@
 
 use std::time::Instant;
 
-/// Seconds that this thread computes for `job`: a busy machine distorts it little.
-pub fn thread_seconds(job: impl FnOnce()) -> f64 {
-    let start = thread_now();
-    job();
-    thread_now() - start
+/// What is counted. Where computing cannot be told from waiting, all count what passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// Seconds that the calling thread computes: a busy machine distorts it little.
+    Thread,
+    /// Seconds that all threads of this process compute.
+    Process,
+    /// Seconds that pass.
+    Wall,
 }
 
-/// Seconds that pass while `job` runs, on however many threads.
-pub fn wall_seconds(job: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    job();
-    start.elapsed().as_secs_f64()
-}
+impl Clock {
+    /// How long `job` takes.
+    pub fn seconds(self, job: impl FnOnce()) -> f64 {
+        let (start, computed) = (Instant::now(), self.computed());
+        job();
+        match (computed, self.computed()) {
+            (Some(before), Some(after)) => after - before,
+            _ => start.elapsed().as_secs_f64(),
+        }
+    }
 
-#[cfg(unix)]
-fn thread_now() -> f64 {
-    let t = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    t.tv_sec as f64 + t.tv_nsec as f64 * 1e-9
-}
+    #[cfg(unix)]
+    fn computed(self) -> Option<f64> {
+        use rustix::time::{ClockId, clock_gettime};
+        let id = match self {
+            Clock::Thread => ClockId::ThreadCPUTime,
+            Clock::Process => ClockId::ProcessCPUTime,
+            Clock::Wall => return None,
+        };
+        let t = clock_gettime(id);
+        Some(t.tv_sec as f64 + t.tv_nsec as f64 * 1e-9)
+    }
 
-#[cfg(not(unix))]
-fn thread_now() -> f64 {
-    use std::sync::OnceLock;
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64()
+    #[cfg(not(unix))]
+    fn computed(self) -> Option<f64> {
+        None
+    }
 }
 
 /// Middle and spread of a measurement.
@@ -64,7 +77,8 @@ mod tests {
     fn time_passes_while_a_thread_computes() {
         let mut x = 1_u64;
         let mut spin = || (0..1_000_000).for_each(|_| x = std::hint::black_box(x.wrapping_mul(3)));
-        assert!(thread_seconds(&mut spin) > 0.0);
-        assert!(wall_seconds(&mut spin) > 0.0);
+        for clock in [Clock::Thread, Clock::Process, Clock::Wall] {
+            assert!(clock.seconds(&mut spin) > 0.0, "{clock:?}");
+        }
     }
 }

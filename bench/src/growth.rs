@@ -1,6 +1,6 @@
 //! How time grows with the scene: the displaced sphere over sizes, next to what theory promises.
 
-use crate::clock::wall_seconds;
+use crate::clock::Clock;
 use crate::embree::Embree;
 use crate::kirkas;
 use crate::options::Options;
@@ -29,7 +29,7 @@ pub fn measure(options: &Options, embree: Option<&Embree>) -> Result<Vec<GrowthR
         let mut builds = Vec::new();
         for &kind in &options.accels {
             let mut built = Ok(());
-            let seconds = wall_seconds(|| built = kirkas::build(kind, &scene, &Serial).map(drop));
+            let seconds = Clock::Process.seconds(|| built = kirkas::build(kind, &scene, &Serial).map(drop));
             built?;
             let per_step = seconds * 1e9 / (n as f64 * (n as f64).log2());
             println!("  {:14} build {seconds:8.3} s, {per_step:6.2} ns per n log2 n", kind.name());

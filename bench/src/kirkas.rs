@@ -1,6 +1,6 @@
 //! Our side.
 
-use crate::clock::thread_seconds;
+use crate::clock::Clock;
 use crate::scenes::Scene;
 use crate::tracer::{Answer, Tracer, Way};
 use kirkas_accel::{Accel, AccelKind, Counters, Executor, Geometry, Hit, Query, SceneGeometry, Shape};
@@ -30,7 +30,7 @@ impl Tracer for Accel {
         let counters = &mut Counters::default();
         if any {
             let mut hits = vec![true; rays.len()];
-            let seconds = thread_seconds(|| match way {
+            let seconds = Clock::Thread.seconds(|| match way {
                 Way::Single => {
                     for (i, (ray, hit)) in rays.iter().zip(&mut hits).enumerate() {
                         *hit = self.any_hit(ray, Query::ALL, i, counters);
@@ -42,7 +42,7 @@ impl Tracer for Accel {
             return (seconds, hits.into_iter().map(answer).collect());
         }
         let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
-        let seconds = thread_seconds(|| match way {
+        let seconds = Clock::Thread.seconds(|| match way {
             Way::Single => {
                 for (i, (ray, hit)) in rays.iter().zip(&mut hits).enumerate() {
                     *hit = self.closest_hit(ray, Query::ALL, i, counters);

@@ -11,7 +11,7 @@ The ray kernel beside Embree 3: identical rays, one process, one thread.
   --scene NAME[,NAME]   sphere-N (N triangles: 1000, 20k, 1m...), stadium, bunny, coffee, staircase2
                         [sphere-1m,sphere-5m,stadium,bunny,coffee,staircase2]
   --set NAME[,NAME]     primary, ao, diff1, diff2, diff2any, random [all]
-  --accel NAME[,NAME]   structures to measure [the default and bvh8_best; all of them for builds]
+  --accel NAME[,NAME]   structures [the default, bvh8 and bvh8_best, those there are; all for builds]
   --quick               3 passes of 65,536 rays over fewer scenes, one build each
   --passes N            passes to take the median of [7]
   --side N              rays on a side of a set, a power of two [512]
@@ -57,7 +57,11 @@ impl Default for Options {
     fn default() -> Self {
         let scenes = ["sphere-1m", "sphere-5m", "stadium", "bunny", "coffee", "staircase2"];
         let mut accels = vec![AccelKind::default()];
-        accels.extend(AccelKind::parse("bvh8_best").filter(|best| *best != AccelKind::default()));
+        for kind in ["bvh8", "bvh8_best"].into_iter().filter_map(AccelKind::parse) {
+            if !accels.contains(&kind) {
+                accels.push(kind);
+            }
+        }
         let all = AccelKind::ALL.map(|(kind, _)| kind);
         Options {
             scenes: scenes.map(str::to_string).to_vec(),

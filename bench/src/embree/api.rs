@@ -17,12 +17,10 @@ macro_rules! api {
         /// Every function, by what it does.
         pub struct Api {
             $(#[doc = $symbol] pub $field: unsafe extern "C" fn($($arg),*) $(-> $out)?,)*
-            /// Keeps the functions above in memory.
-            _library: Library,
         }
 
         impl Api {
-            fn find(library: Library) -> Result<Api, libloading::Error> {
+            fn find(library: &Library) -> Result<Api, libloading::Error> {
                 $(
                     // SAFETY: the signature is that of Embree 3's headers.
                     let $field = unsafe {
@@ -30,7 +28,7 @@ macro_rules! api {
                         *f
                     };
                 )*
-                Ok(Api { $($field,)* _library: library })
+                Ok(Api { $($field,)* })
             }
         }
     };
@@ -65,6 +63,8 @@ impl Api {
         let library = NAMES.iter().find_map(|name| unsafe { Library::new(*name) }.ok());
         let library =
             library.ok_or("not found; `apt-get install libembree-dev` (Debian, Ubuntu) installs version 3")?;
+        // It stays in memory for good: its threads may run on after its last device is gone.
+        let library: &'static Library = Box::leak(Box::new(library));
         Api::find(library).map_err(|e| format!("not the library we know: {e}"))
     }
 }

@@ -3,7 +3,7 @@
 mod api;
 mod layout;
 
-use crate::clock::thread_seconds;
+use crate::clock::Clock;
 use crate::scenes::Scene;
 use crate::tracer::{Answer, Tracer, Way};
 use api::{Api, Handle};
@@ -177,10 +177,10 @@ impl Tracer for Built<'_> {
             (Way::Packet, false) => {
                 // A renderer that has packets makes its rays as packets: that is not timed, a copy of them is.
                 let packets: Vec<RtcRayHit8> = rays.chunks(8).map(RtcRayHit8::new).collect();
-                thread_seconds(|| self.packets(&packets, &mut answers))
+                Clock::Thread.seconds(|| self.packets(&packets, &mut answers))
             }
-            (_, true) => thread_seconds(|| self.occluded(rays, &mut answers)),
-            (_, false) => thread_seconds(|| self.nearest(rays, &mut answers)),
+            (_, true) => Clock::Thread.seconds(|| self.occluded(rays, &mut answers)),
+            (_, false) => Clock::Thread.seconds(|| self.nearest(rays, &mut answers)),
         };
         (seconds, answers)
     }
