@@ -1,40 +1,24 @@
-//! Builds the tree: at each node the split of least expected cost among 15 planes per axis, by the surface-area heuristic
-//! (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
+//! Builds the tree: at each node the split of least expected cost among the planes between bins, by the surface-area
+//! heuristic.
 //!
-//! One array of boxes is partitioned in place. Subtrees may be built at once: which, and with what outcome, depends on
-//! their size only.
+//! One array of boxes is partitioned in place. Subtrees may be built at once, and large nodes be split by many threads:
+//! which, and with what outcome, depends on their size only.
 
-use super::binary::{BinaryTree, Child, MAX_DEPTH, MAX_LEAF, Node};
-use super::reference::{Box4, Lanes, Reference};
+use super::binary::{BinaryTree, Child, MAX_DEPTH, Node};
+use super::bins::{Binning, Bins, MAX_BINS};
+use super::costs::Costs;
+use super::partition::{self, cut, partition, partition_in_chunks};
+use super::reference::{Box4, Reference};
 use crate::Executor;
 
-/// Cost of visiting a node; testing a primitive costs 1.
-pub(crate) const NODE_COST: f32 = 2.0;
-const BINS: usize = 16;
 /// Subtrees larger than this are handed to the executor in two halves.
 const FORK_ABOVE: usize = 1 << 15;
 
-/// The tree over `references`.
-pub(crate) fn build(mut references: Vec<Reference>, executor: &dyn Executor) -> BinaryTree {
-    let (nodes, root) = nodes(&mut references, executor);
+/// The tree over `references`. Nodes stand depth first, the left child after its parent.
+pub(crate) fn build(mut references: Vec<Reference>, costs: &Costs, executor: &dyn Executor) -> BinaryTree {
+    let builder = Builder { costs, executor };
+    let (nodes, root) = builder.nodes(&mut references);
     BinaryTree { nodes, root, references }
-}
-
-/// The nodes over `references`, which are put into the order of the leaves, and the root.
-fn nodes(references: &mut [Reference], executor: &dyn Executor) -> (Vec<Node>, Option<Child>) {
-    if references.is_empty() {
-        return (Vec::new(), None);
-    }
-    let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
-    let mut nodes = Vec::new();
-    let root = if references.len() > FORK_ABOVE {
-        let piece = fork(references, 0, whole, 0, executor);
-        nodes.reserve_exact(piece.len());
-        piece.append_to(&mut nodes)
-    } else {
-        subtree(references, 0, whole, 0, &mut nodes)
-    };
-    (nodes, Some(root))
 }
 
 /// A tree in pieces, each built on its own.
@@ -68,33 +52,11 @@ impl Piece {
     }
 }
 
-fn fork(references: &mut [Reference], first: usize, whole: Box4, depth: usize, executor: &dyn Executor) -> Piece {
-    if references.len() <= FORK_ABOVE {
-        let mut nodes = Vec::with_capacity(references.len() / 2);
-        let root = subtree(references, first, whole, depth, &mut nodes);
-        return Piece::Whole(nodes, root);
-    }
-    let split = split(references, &whole, depth).expect("more references than a leaf holds");
-    let (left, right) = references.split_at_mut(split.left_count);
-    let (mut a, mut b) = (None, None);
-    executor.join(&mut || a = Some(fork(left, first, split.boxes[0], depth + 1, executor)), &mut || {
-        b = Some(fork(right, first + split.left_count, split.boxes[1], depth + 1, executor))
-    });
-    let halves = Box::new([a.expect("executors run both jobs"), b.expect("executors run both jobs")]);
-    Piece::Forked { boxes: split.boxes, halves }
-}
-
-fn subtree(references: &mut [Reference], first: usize, whole: Box4, depth: usize, nodes: &mut Vec<Node>) -> Child {
-    let Some(split) = split(references, &whole, depth) else {
-        return Child::leaf(first, references.len());
-    };
-    let index = nodes.len();
-    nodes.push(Node::new([&split.boxes[0].to_bounds(), &split.boxes[1].to_bounds()], [Child::node(0); 2]));
-    let (left, right) = references.split_at_mut(split.left_count);
-    let left = subtree(left, first, split.boxes[0], depth + 1, nodes);
-    let right = subtree(right, first + split.left_count, split.boxes[1], depth + 1, nodes);
-    nodes[index].children = [left, right];
-    Child::node(index)
+/// The boxes around some references and around their centers.
+#[derive(Clone, Copy)]
+struct Around {
+    whole: Box4,
+    centers: Box4,
 }
 
 struct Split {
@@ -102,33 +64,147 @@ struct Split {
     boxes: [Box4; 2],
 }
 
-/// Partition the references by the best split; `None` makes a leaf.
-fn split(references: &mut [Reference], whole: &Box4, depth: usize) -> Option<Split> {
-    let n = references.len();
-    if n == 1 {
-        return None;
-    }
-    // Near the depth that traversal has room for, halve: each level then takes one from the logarithm.
-    let levels_needed = usize::BITS - (n - 1).leading_zeros();
-    if depth + levels_needed as usize >= MAX_DEPTH {
-        return (n > MAX_LEAF).then(|| halve(references));
-    }
-    let centers = references.iter().fold(Box4::EMPTY, |b, r| {
-        let c = r.center();
-        Box4 { lo: b.lo.min(c), hi: b.hi.max(c) }
-    });
-    let binning = Binning::new(&centers);
-    // Few references need few planes.
-    let best = if n <= MAX_LEAF { binning.best_plane::<8>(references) } else { binning.best_plane::<BINS>(references) };
-    let leaf_cost = n as f32 * whole.half_area();
-    match best {
-        Some(plane) if n > MAX_LEAF || plane.cost + NODE_COST * whole.half_area() < leaf_cost => {
-            let left_count = partition(references, |r| binning.bin(r, plane.axis, plane.bins) <= plane.last_left);
-            debug_assert_eq!(left_count, plane.left_count);
-            Some(Split { left_count, boxes: plane.boxes })
+struct Builder<'a> {
+    costs: &'a Costs,
+    executor: &'a dyn Executor,
+}
+
+impl Builder<'_> {
+    /// The nodes over `references`, which are put into the order of the leaves, and the root.
+    fn nodes(&self, references: &mut [Reference]) -> (Vec<Node>, Option<Child>) {
+        if references.is_empty() {
+            return (Vec::new(), None);
         }
-        _ => (n > MAX_LEAF).then(|| halve(references)),
+        let around = self.around(references);
+        let piece = self.fork(references, 0, around, 0);
+        let mut nodes = Vec::with_capacity(piece.len());
+        let root = match piece {
+            Piece::Whole(own, root) => {
+                nodes = own;
+                root
+            }
+            forked => forked.append_to(&mut nodes),
+        };
+        (nodes, Some(root))
     }
+
+    fn around(&self, references: &[Reference]) -> Around {
+        let Some(middle) = cut(references) else {
+            let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
+            return Around { whole, centers: partition::centers(references) };
+        };
+        let (a, b) = references.split_at(middle);
+        let [a, b] = self.both(|| self.around(a), || self.around(b));
+        Around { whole: a.whole.union(b.whole), centers: a.centers.union(b.centers) }
+    }
+
+    fn bins(&self, references: &[Reference], binning: &Binning) -> Bins {
+        let Some(middle) = cut(references) else {
+            let mut bins = Bins::EMPTY;
+            bins.fill(references, binning);
+            return bins;
+        };
+        let (a, b) = references.split_at(middle);
+        let [mut a, b] = self.both(|| self.bins(a, binning), || self.bins(b, binning));
+        a.merge(&b);
+        a
+    }
+
+    /// Both results, perhaps computed at once.
+    fn both<T: Send>(&self, mut a: impl FnMut() -> T + Send, mut b: impl FnMut() -> T + Send) -> [T; 2] {
+        let (mut of_a, mut of_b) = (None, None);
+        self.executor.join(&mut || of_a = Some(a()), &mut || of_b = Some(b()));
+        [of_a, of_b].map(|of| of.expect("executors run both jobs"))
+    }
+
+    fn fork(&self, references: &mut [Reference], first: usize, around: Around, depth: usize) -> Piece {
+        if references.len() <= FORK_ABOVE {
+            let mut nodes = Vec::with_capacity(references.len() / 3);
+            let mut bins = Bins::EMPTY;
+            let root = self.subtree(references, first, around.whole, depth, &mut nodes, &mut bins);
+            return Piece::Whole(nodes, root);
+        }
+        let binning = Binning::new(&around.centers, MAX_BINS);
+        let roomy = has_room(references.len(), depth);
+        let plane = if roomy { self.bins(references, &binning).best_plane(&binning, self.costs) } else { None };
+        let (left_count, arounds) = match plane {
+            Some(plane) => {
+                let left = |chunk: &mut [Reference]| partition(chunk, |r| binning.is_left(r, &plane));
+                let (left_count, centers) = partition_in_chunks(references, &left, self.executor);
+                debug_assert_eq!(left_count, plane.left_count);
+                (left_count, [0, 1].map(|s| Around { whole: plane.boxes[s], centers: centers[s] }))
+            }
+            None => {
+                let (left, right) = references.split_at(references.len() / 2);
+                (left.len(), [self.around(left), self.around(right)])
+            }
+        };
+        let (left, right) = references.split_at_mut(left_count);
+        let halves = self.both(
+            || self.fork(left, first, arounds[0], depth + 1),
+            || self.fork(right, first + left_count, arounds[1], depth + 1),
+        );
+        Piece::Forked { boxes: arounds.map(|a| a.whole), halves: Box::new(halves) }
+    }
+
+    fn subtree(
+        &self,
+        references: &mut [Reference],
+        first: usize,
+        whole: Box4,
+        depth: usize,
+        nodes: &mut Vec<Node>,
+        bins: &mut Bins,
+    ) -> Child {
+        let Some(split) = self.split(references, &whole, depth, bins) else {
+            return Child::leaf(first, references.len());
+        };
+        let index = nodes.len();
+        nodes.push(Node::new([&split.boxes[0].to_bounds(), &split.boxes[1].to_bounds()], [Child::node(0); 2]));
+        let (left, right) = references.split_at_mut(split.left_count);
+        let left = self.subtree(left, first, split.boxes[0], depth + 1, nodes, bins);
+        let right = self.subtree(right, first + split.left_count, split.boxes[1], depth + 1, nodes, bins);
+        nodes[index].children = [left, right];
+        Child::node(index)
+    }
+
+    /// Partition the references by the best split; `None` makes a leaf.
+    fn split(&self, references: &mut [Reference], whole: &Box4, depth: usize, bins: &mut Bins) -> Option<Split> {
+        let n = references.len();
+        if n == 1 {
+            return None;
+        }
+        if !has_room(n, depth) {
+            return (n > self.costs.max_leaf).then(|| halve(references));
+        }
+        // Few references need few planes.
+        let count = match n {
+            0..16 => 8,
+            16..256 => 16,
+            _ => MAX_BINS,
+        };
+        let binning = Binning::new(&partition::centers(references), count);
+        bins.fill(references, &binning);
+        let plane = bins.best_plane(&binning, self.costs);
+        let area = whole.half_area();
+        let leaf_cost = self.costs.blocks(n as u32) * self.costs.leaf * area;
+        match plane {
+            Some(plane)
+                if n > self.costs.max_leaf || plane.cost * self.costs.leaf + self.costs.node * area < leaf_cost =>
+            {
+                let left_count = partition(references, |r| binning.is_left(r, &plane));
+                debug_assert_eq!(left_count, plane.left_count);
+                Some(Split { left_count, boxes: plane.boxes })
+            }
+            _ => (n > self.costs.max_leaf).then(|| halve(references)),
+        }
+    }
+}
+
+/// Near the depth that traversal has room for, references are halved: each level then takes one from the logarithm.
+fn has_room(count: usize, depth: usize) -> bool {
+    let levels_needed = usize::BITS - (count - 1).leading_zeros();
+    depth + (levels_needed as usize) < MAX_DEPTH
 }
 
 /// Cut in the middle of the order they are in.
@@ -138,118 +214,12 @@ fn halve(references: &mut [Reference]) -> Split {
     Split { left_count, boxes: [around(&references[..left_count]), around(&references[left_count..])] }
 }
 
-/// Put those for which `left` holds first; returns how many they are. Without a branch on the data.
-fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) -> usize {
-    let mut count = 0;
-    for i in 0..references.len() {
-        let goes_left = left(&references[i]);
-        references.swap(i, count);
-        count += usize::from(goes_left);
-    }
-    count
-}
-
-/// The map from centers to bins.
-struct Binning {
-    low: Lanes,
-    /// One over the size; 0 where the centers do not differ.
-    scale: Lanes,
-}
-
-/// A plane between bins.
-struct Plane {
-    axis: usize,
-    bins: u32,
-    last_left: u32,
-    cost: f32,
-    left_count: usize,
-    boxes: [Box4; 2],
-}
-
-/// Adding it to a small positive f32 leaves the nearest integer in the low bits.
-const INTEGER_IN_LOW_BITS: f32 = 8_388_608.0;
-
-impl Binning {
-    fn new(centers: &Box4) -> Self {
-        let scale = core::array::from_fn(|k| {
-            let scale = 1.0 / (centers.hi.0[k] - centers.lo.0[k]);
-            if scale > 0.0 && scale.is_finite() { scale } else { 0.0 }
-        });
-        Binning { low: centers.lo, scale: Lanes(scale) }
-    }
-
-    /// Monotone in the center: `(0, bins)` to `0..bins`.
-    #[inline(always)]
-    fn bin(&self, r: &Reference, axis: usize, bins: u32) -> u32 {
-        let k = axis & 3;
-        let c = r.0.lo.0[k] * 0.5 + r.0.hi.0[k] * 0.5;
-        let x = (c - self.low.0[k]) * self.scale.0[k] * (bins as f32 - 0.02);
-        // Half a bin is added, lest 0 be rounded to a bin of its own, and one bin taken off again.
-        ((x + 0.51) + INTEGER_IN_LOW_BITS).to_bits().wrapping_sub(1) & (bins - 1)
-    }
-
-    fn best_plane<const N: usize>(&self, references: &[Reference]) -> Option<Plane> {
-        let mut boxes = [[Box4::EMPTY; N]; 3];
-        let mut counts = [[0_u32; N]; 3];
-        for r in references {
-            let at: [u32; 4] = core::array::from_fn(|axis| self.bin(r, axis, N as u32));
-            for axis in 0..3 {
-                let i = at[axis] as usize & (N - 1);
-                boxes[axis][i] = boxes[axis][i].union(r.0);
-                counts[axis][i] += 1;
-            }
-        }
-        let mut best = (f32::INFINITY, 0, 0);
-        for axis in 0..3 {
-            if self.scale.0[axis] > 0.0 {
-                let (cost, last_left) = sweep(&boxes[axis], &counts[axis]);
-                if cost < best.0 {
-                    best = (cost, axis, last_left);
-                }
-            }
-        }
-        let (cost, axis, last_left) = best;
-        let around = |b: &[Box4]| b.iter().fold(Box4::EMPTY, |all, b| all.union(*b));
-        let (left, right) = boxes[axis].split_at(last_left + 1);
-        let left_count = counts[axis][..=last_left].iter().sum::<u32>() as usize;
-        let boxes = [around(left), around(right)];
-        let plane = Plane { axis, bins: N as u32, last_left: last_left as u32, cost, left_count, boxes };
-        (cost < f32::INFINITY).then_some(plane)
-    }
-}
-
-/// The least cost among one axis' planes, and the last bin to the left of that plane.
-#[inline(always)]
-fn sweep<const N: usize>(boxes: &[Box4; N], counts: &[u32; N]) -> (f32, usize) {
-    let mut right_cost = [0.0_f32; N];
-    let (mut right, mut right_count) = (Box4::EMPTY, 0);
-    for i in (1..N).rev() {
-        right = right.union(boxes[i]);
-        right_count += counts[i];
-        right_cost[i - 1] = cost(right_count, &right);
-    }
-    let (mut left, mut left_count) = (Box4::EMPTY, 0);
-    let mut best = (f32::INFINITY, 0);
-    for i in 0..N - 1 {
-        left = left.union(boxes[i]);
-        left_count += counts[i];
-        let sum = cost(left_count, &left) + right_cost[i];
-        if sum < best.0 {
-            best = (sum, i);
-        }
-    }
-    best
-}
-
-/// Tests expected in a side of a split; an empty side makes the plane worthless.
-#[inline(always)]
-fn cost(count: u32, around: &Box4) -> f32 {
-    if count == 0 { f32::INFINITY } else { count as f32 * around.half_area() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Serial;
+    use crate::build::partition::CHUNK;
+    use crate::build::testing::{Threads, random_boxes};
     use kirkas_geometry::{Bounds3, Vec3};
 
     /// Boxes of which every split peels off a few, begun so deep that the room for it runs out.
@@ -260,12 +230,49 @@ mod tests {
             let mut references: Vec<_> = (-50..50).map(|i| Reference::new(&cube(i), 0, (i + 50) as u32)).collect();
             let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
             let mut nodes = Vec::new();
-            let root = subtree(&mut references, 0, whole, depth, &mut nodes);
+            let builder = Builder { costs: &Costs::BVH2, executor: &Serial };
+            let root = builder.subtree(&mut references, 0, whole, depth, &mut nodes, &mut { Bins::EMPTY });
             levels(&nodes, root)
         };
         assert!(peels(0) > 10);
         assert!(peels(MAX_DEPTH - 10) <= 10);
         assert!(peels(MAX_DEPTH - 7) <= 7);
+    }
+
+    #[test]
+    fn the_tree_is_the_same_whatever_the_executor() {
+        for costs in [Costs::BVH2, Costs::WIDE, Costs::INSTANCES] {
+            let [a, b]: [&dyn Executor; 2] = [&Serial, &Threads];
+            let [a, b] = [a, b].map(|e| build(random_boxes(5 * CHUNK + 77, 1), &costs, e));
+            let node = |n: &Node| (n.planes.map(|p| p.map(|s| s.map(f32::to_bits))), n.children);
+            assert!(a.nodes.iter().map(node).eq(b.nodes.iter().map(node)) && a.root == b.root);
+            assert!(a.references.iter().map(Reference::ids).eq(b.references.iter().map(Reference::ids)));
+            let mut ids: Vec<_> = a.references.iter().map(Reference::ids).collect();
+            ids.sort_unstable();
+            assert!(ids.into_iter().eq((0..a.references.len() as u32).map(|i| (0, i))));
+        }
+    }
+
+    #[test]
+    fn what_coincides_is_halved() {
+        let one = random_boxes(1, 1)[0];
+        for count in [9, 1000, 3 * CHUNK] {
+            let tree = build(vec![one; count], &Costs::WIDE, &Serial);
+            let depth = levels(&tree.nodes, tree.root.unwrap());
+            assert!(depth <= count.ilog2() as usize, "{count} in {depth} levels");
+        }
+    }
+
+    #[test]
+    fn leaves_are_as_small_as_asked_and_full_blocks_are_liked() {
+        let leaves = |costs: &Costs| {
+            let tree = build(random_boxes(20_000, 3), costs, &Serial);
+            let children = tree.nodes.iter().flat_map(|n| n.children).filter(|c| c.is_leaf());
+            children.map(|c| c.run().1).collect::<Vec<_>>()
+        };
+        assert!(leaves(&Costs::INSTANCES).iter().all(|n| *n == 1));
+        let (full, small) = (leaves(&Costs::WIDE).len(), leaves(&Costs::BVH2).len());
+        assert!(full * 4 < small * 3, "{full} leaves, {small} without blocks");
     }
 
     fn levels(nodes: &[Node], child: Child) -> usize {

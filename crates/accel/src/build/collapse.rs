@@ -190,13 +190,14 @@ mod tests {
     use super::*;
     use crate::Serial;
     use crate::build::binned_sah;
+    use crate::build::costs::Costs as SplitCosts;
     use crate::build::reference::Reference;
     use crate::build::testing::{Threads, random_boxes};
 
     const COSTS: Costs = Costs { node: 1.0, leaf: 0.7 };
 
     fn tree(count: usize, seed: u64) -> BinaryTree {
-        binned_sah::build(random_boxes(count, seed), &Serial)
+        binned_sah::build(random_boxes(count, seed), &SplitCosts::BVH2, &Serial)
     }
 
     fn area(b: Bounds3) -> f64 {
@@ -347,7 +348,7 @@ mod tests {
                 let b = r.bounds();
                 *r = Reference::new(&Bounds3 { min: b.min * scale, max: b.max * scale }, r.ids().0, r.ids().1);
             }
-            let (_, references) = collapsed(&binned_sah::build(references, &Serial), COSTS);
+            let (_, references) = collapsed(&binned_sah::build(references, &SplitCosts::BVH2, &Serial), COSTS);
             assert_eq!(references, (0..500).collect::<Vec<_>>());
         }
     }
@@ -364,7 +365,7 @@ mod tests {
 
     #[test]
     fn nothing_collapses_to_nothing() {
-        let tree = binned_sah::build(Vec::new(), &Serial);
+        let tree = binned_sah::build(Vec::new(), &SplitCosts::BVH2, &Serial);
         assert!(Collapse::new(&tree, COSTS, &Serial).root(&tree).is_none());
     }
 }

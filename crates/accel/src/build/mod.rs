@@ -2,11 +2,14 @@
 
 pub(crate) mod binary;
 pub(crate) mod binned_sah;
+mod bins;
 pub(crate) mod collapse;
+pub(crate) mod costs;
+mod lanes;
 #[allow(dead_code)]
 pub(crate) mod morton;
-#[allow(dead_code)]
 mod parallel;
+mod partition;
 pub(crate) mod reference;
 #[cfg(test)]
 pub(crate) mod testing;

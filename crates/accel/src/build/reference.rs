@@ -1,23 +1,12 @@
 //! What builders sort: a primitive's box with its ids.
 
+use super::lanes::Lanes;
 use kirkas_geometry::{Bounds3, Vec3};
 
-/// A box in the making. The fourth lane carries the ids of a [`Reference`] and nothing otherwise.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(16))]
-pub(crate) struct Lanes(pub [f32; 4]);
+/// Sizes are capped at this, so that their products stay finite.
+pub(crate) const MAX_SIZE: f32 = 1e18;
 
-impl Lanes {
-    #[inline(always)]
-    pub fn min(self, o: Lanes) -> Lanes {
-        Lanes(core::array::from_fn(|i| if self.0[i] < o.0[i] { self.0[i] } else { o.0[i] }))
-    }
-    #[inline(always)]
-    pub fn max(self, o: Lanes) -> Lanes {
-        Lanes(core::array::from_fn(|i| if self.0[i] > o.0[i] { self.0[i] } else { o.0[i] }))
-    }
-}
-
+/// A box in the making. The fourth lanes carry the ids of a [`Reference`] and nothing otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Box4 {
     pub lo: Lanes,
@@ -32,10 +21,10 @@ impl Box4 {
         Box4 { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
 
-    /// Half the surface area; sizes are capped so that the product stays finite.
+    /// Half the surface area, finite.
     #[inline(always)]
     pub fn half_area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|k| (self.hi.0[k] - self.lo.0[k]).min(1e18));
+        let [x, y, z] = [0, 1, 2].map(|k| (self.hi.0[k] - self.lo.0[k]).min(MAX_SIZE));
         x * y + (y + x) * z
     }
 
@@ -73,6 +62,7 @@ impl Reference {
     /// The center, without overflow.
     #[inline(always)]
     pub fn center(&self) -> Lanes {
-        Lanes(core::array::from_fn(|i| self.0.lo.0[i] * 0.5 + self.0.hi.0[i] * 0.5))
+        let half = Lanes::splat(0.5);
+        self.0.lo.times(half).plus(self.0.hi.times(half))
     }
 }

@@ -8,6 +8,7 @@ mod validate;
 use crate::Executor;
 use crate::build::binary::{BinaryTree, Child, Node};
 use crate::build::binned_sah;
+use crate::build::costs::Costs;
 use crate::build::reference::Reference;
 use crate::instance::PlacedInstance;
 use crate::record::{Gathered, Record, gather};
@@ -31,7 +32,7 @@ impl Tree {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
         let Gathered { references, unbounded } = gather(geometries, instances);
-        let BinaryTree { nodes, root, references } = binned_sah::build(references, executor);
+        let BinaryTree { nodes, root, references } = binned_sah::build(references, &Costs::BVH2, executor);
 
         // Put the primitives' data where the leaves look for it.
         let record = |r: &Reference| Record::new(geometries, r.ids().0, r.ids().1);

@@ -2,7 +2,7 @@
 
 use super::Tree;
 use crate::build::binary::{Child, MAX_DEPTH};
-use crate::build::binned_sah;
+use crate::build::costs::Costs;
 use crate::instance::PlacedInstance;
 use crate::primitive;
 use crate::record::{IS_INSTANCE, all_references};
@@ -56,7 +56,7 @@ impl Tree {
         let Some(root_area) = self.bounds.map(area).filter(|a| *a > 0.0) else { return 0.0 };
         let mut cost = 0.0;
         let _ = self.try_walk(|child, bounds, _| {
-            let each = if child.is_leaf() { child.run().1 as f64 } else { f64::from(binned_sah::NODE_COST) };
+            let each = if child.is_leaf() { child.run().1 as f64 } else { f64::from(Costs::BVH2.node) };
             cost += each * area(bounds) / root_area;
             Ok(())
         });

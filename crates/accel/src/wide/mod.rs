@@ -21,9 +21,10 @@ pub(crate) use in_flight::Batch;
 use crate::Executor;
 use crate::build::binary::MAX_DEPTH;
 use crate::build::binned_sah;
+use crate::build::costs::Costs;
 use crate::instance::PlacedInstance;
 use crate::record::{Gathered, Record, gather};
-use crate::scene_geometry::Geometry;
+use crate::scene_geometry::{Geometry, Shape};
 use arena::Line;
 use kirkas_geometry::Bounds3;
 use node::Place;
@@ -49,7 +50,7 @@ impl Tree {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
         let Gathered { references, unbounded } = gather(geometries, instances);
-        let binary = binned_sah::build(references, executor);
+        let binary = binned_sah::build(references, &costs(geometries, instances), executor);
         let numbers = Numbers::new(geometries);
         let bounds = binary.references.iter().map(|r| r.bounds()).fold(Bounds3::EMPTY, Bounds3::union);
         let (lines, root) = emit::emit(&binary, geometries, &numbers, executor);
@@ -63,6 +64,20 @@ impl Tree {
 
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.lines) + self.numbers.bytes() + size_of_val(&*self.unbounded)
+    }
+}
+
+/// The prices for what most of a level is made of.
+fn costs(geometries: &[Geometry], instances: &[PlacedInstance]) -> Costs {
+    let is_block = |g: &&Geometry| matches!(g.shape, Shape::Triangles { .. });
+    let triangles: usize = geometries.iter().filter(is_block).map(|g| g.shape.len()).sum();
+    let others: usize = geometries.iter().filter(|g| !is_block(g)).map(|g| g.shape.len()).sum();
+    if instances.len() > triangles + others {
+        Costs::INSTANCES
+    } else if others > triangles {
+        Costs::BVH2
+    } else {
+        Costs::WIDE
     }
 }
 

@@ -3,7 +3,7 @@
 use super::arena::read;
 use super::node::{Block, List, Node, Place, WIDTH};
 use super::{MAX_LEVELS, Tree};
-use crate::build::binned_sah::NODE_COST;
+use crate::build::costs::Costs;
 use crate::instance::PlacedInstance;
 use crate::primitive;
 use crate::record::{IS_INSTANCE, all_references};
@@ -82,7 +82,8 @@ impl Tree {
         }
         let mut cost = 0.0;
         let _ = self.try_walk(|seen| {
-            let each = if seen.place.is_node() { f64::from(NODE_COST) } else { self.leaf(seen.place)?.count() as f64 };
+            let each =
+                if seen.place.is_node() { f64::from(Costs::BVH2.node) } else { self.leaf(seen.place)?.count() as f64 };
             cost += each * area(seen.bounds) / root_area;
             Ok(())
         });

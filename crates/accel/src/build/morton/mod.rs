@@ -99,7 +99,7 @@ mod tests {
             Collapse::new(&tree, costs, &Serial).cost()
         };
         let fast = cost(build(references.clone(), &Serial));
-        let good = cost(crate::build::binned_sah::build(references, &Serial));
+        let good = cost(crate::build::binned_sah::build(references, &crate::build::costs::Costs::BVH2, &Serial));
         assert!(fast < 1.2 * good, "{fast} against {good}");
     }
 }

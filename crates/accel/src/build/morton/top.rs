@@ -4,6 +4,7 @@ use super::clusters::Grove;
 use crate::Executor;
 use crate::build::binary::{BinaryTree, Child};
 use crate::build::binned_sah;
+use crate::build::costs::Costs;
 use crate::build::reference::{Box4, Reference};
 
 /// A part of the tree.
@@ -34,7 +35,7 @@ pub(super) fn over(groves: &[Grove], room: usize, executor: &dyn Executor) -> Pa
         Part { what: What::Root(grove, root), around: c.around, references, leaves, levels: 0 }
     };
     let reference = |(i, root): (usize, &(usize, u32))| Reference::new(&part(root).around.to_bounds(), 0, i as u32);
-    let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), executor);
+    let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), &Costs::BVH2, executor);
     let top = of_tree(&tree, tree.root.expect("groves have roots"), &|i| part(&roots[i]));
     if top.levels <= room { top } else { halves(&roots, &part) }
 }
