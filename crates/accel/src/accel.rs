@@ -10,22 +10,24 @@ use crate::search::{Enter, Level, Search};
 use crate::structure::{Measures, Structure};
 use crate::wide::Batch;
 use crate::{AccelError, AccelKind, Executor, check, record};
+use core::cell::RefCell;
+use core::cmp::Ordering;
 use kirkas_geometry::{Bounds3, Ray};
 
 /// A structure over a scene. Immutable, and shared by as many threads as the caller likes.
 pub struct Accel {
     kind: AccelKind,
-    scene: SceneGeometry,
+    pub(crate) scene: SceneGeometry,
     bounds: Bounds3,
-    world: Built,
-    aggregates: Vec<Built>,
+    pub(crate) world: Built,
+    pub(crate) aggregates: Vec<Built>,
 }
 
 /// The structure over the world or over an aggregate.
 #[derive(Default)]
-struct Built {
-    structure: Structure,
-    instances: Vec<PlacedInstance>,
+pub(crate) struct Built {
+    pub structure: Structure,
+    pub instances: Vec<PlacedInstance>,
 }
 
 /// What a structure looks like.
@@ -82,6 +84,31 @@ impl Accel {
         self.search(ray, &mut search);
         *counters += search.counters;
         search.best.is_some()
+    }
+
+    /// Every hit along the ray, nearest first, each once: those of equal `t` in the order of (path, geometry, primitive, `u`,
+    /// `v`). A primitive is hit as often as the ray crosses it; crossings that round to the same `t`, `u` and `v` are one.
+    /// `visit` returns true to stop. `ray_index` as for [`Accel::closest_hit`].
+    pub fn all_hits(
+        &self,
+        ray: &Ray,
+        query: Query,
+        ray_index: usize,
+        counters: &mut Counters,
+        visit: &mut dyn FnMut(&Hit) -> bool,
+    ) {
+        let found = RefCell::new(Vec::new());
+        let mut search = Search::<false>::new(ray, ray_index, query);
+        search.all = Some(&found);
+        self.search(ray, &mut search);
+        *counters += search.counters;
+        let mut hits = found.into_inner();
+        // Of -0 and 0 neither is nearer.
+        let by_t = |a: &Hit, b: &Hit| a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal);
+        let by_weights = |a: &Hit, b: &Hit| a.u.total_cmp(&b.u).then(a.v.total_cmp(&b.v));
+        hits.sort_by(|a, b| by_t(a, b).then(a.id().cmp(&b.id())).then_with(|| by_weights(a, b)));
+        hits.dedup();
+        let _ = hits.iter().any(visit);
     }
 
     /// The nearest hit of each ray, as [`Accel::closest_hit`] gives it. The slices must be of one length.
@@ -173,11 +200,11 @@ impl Accel {
             .search(self.world_level(), &ray, search, &|ray, search, index| self.search_instance(index, ray, search));
     }
 
-    fn world_level(&self) -> Level<'_> {
+    pub(crate) fn world_level(&self) -> Level<'_> {
         self.level(&self.scene.world, &self.world, InstancePath::WORLD)
     }
 
-    fn level<'a>(&self, geometries: &'a [Geometry], built: &Built, instance: InstancePath) -> Level<'a> {
+    pub(crate) fn level<'a>(&self, geometries: &'a [Geometry], built: &Built, instance: InstancePath) -> Level<'a> {
         Level { geometries, instances: built.instances.len() as u32, instance, shutter: self.scene.shutter }
     }
 

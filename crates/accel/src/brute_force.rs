@@ -1,5 +1,6 @@
 //! Every primitive against every ray: the simple twin that tests every structure.
 
+use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::prepared_ray::PreparedRay;
 use crate::primitive;
 use crate::search::{Enter, Level, Search};
@@ -18,5 +19,17 @@ pub(crate) fn search<const ANY: bool>(level: Level, ray: &PreparedRay, search: &
     }
     for instance in 0..level.instances {
         enter(ray, search, instance);
+    }
+}
+
+/// Look for the closest point on each primitive of a level and in each of its instances.
+pub(crate) fn closest_point(level: Level, space: &PointSpace, search: &mut PointSearch, enter: EnterPoint) {
+    for (g, geometry) in level.geometries.iter().enumerate() {
+        for p in 0..geometry.shape.len() as u32 {
+            search.consider(level, space, g as u32, p);
+        }
+    }
+    for instance in 0..level.instances {
+        enter(search, instance);
     }
 }

@@ -41,6 +41,14 @@ pub fn intersect(ends: &[CurvePoint; 2], ray: &PreparedRay, mut visit: impl FnMu
     }
 }
 
+/// The point of the surface closest to `point`, with its `u`.
+pub(crate) fn closest_point(ends: &[CurvePoint; 2], point: DVec3) -> (DVec3, f64) {
+    let cone = Cone::new(ends);
+    let near = cone.closest(point - cone.a);
+    let out = point - cone.a - near.center;
+    (cone.a + near.center + out.try_normalize().unwrap_or(near.out) * near.radius, near.u)
+}
+
 /// A segment; positions are relative to `a`.
 struct Cone {
     a: DVec3,
@@ -56,6 +64,9 @@ struct Cone {
 struct Ball {
     center: DVec3,
     radius: f64,
+    u: f64,
+    /// Where its center itself is closest to the surface.
+    out: DVec3,
 }
 
 impl Cone {
@@ -110,15 +121,17 @@ impl Cone {
     /// The ball of the segment to which `point` is closest: its own distance is the segment's.
     fn closest(&self, point: DVec3) -> Ball {
         let length2 = self.axis.dot(self.axis);
-        let u = if self.k <= 0.0 {
-            if self.growth > 0.0 { 1.0 } else { 0.0 }
+        let (u, out) = if self.k <= 0.0 {
+            (if self.growth > 0.0 { 1.0 } else { 0.0 }, DVec3::X)
         } else {
             // The ball's center lies as far along as the point, and farther by the cone's slope times the distance from
             // the axis.
-            let away = point.dot(outward(point, self.axis)).max(0.0);
-            let along = point.dot(self.axis) / length2 + away * self.growth / (length2 * self.k).sqrt();
-            along.clamp(0.0, 1.0)
+            let length = length2.sqrt();
+            let side = outward(point, self.axis);
+            let away = point.dot(side).max(0.0);
+            let along = point.dot(self.axis) / length2 + away * self.growth / (length * self.k.sqrt());
+            (along.clamp(0.0, 1.0), side * (self.k / length2).sqrt() - self.axis * (self.growth / length2))
         };
-        Ball { center: self.axis * u, radius: self.radius + self.growth * u }
+        Ball { center: self.axis * u, radius: self.radius + self.growth * u, u, out }
     }
 }

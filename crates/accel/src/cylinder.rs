@@ -53,6 +53,19 @@ pub fn intersect(cylinder: &Cylinder, ray: &PreparedRay, mut visit: impl FnMut(f
     }
 }
 
+/// The point of the surface closest to `point`, with its `u`; `None` without length.
+pub(crate) fn closest_point(cylinder: &Cylinder, point: DVec3) -> Option<(DVec3, f64)> {
+    let [a, b] = cylinder.ends.map(|p| p.as_dvec3());
+    let axis = b - a;
+    let along = (point - a).dot(axis) / axis.dot(axis);
+    if along.is_nan() {
+        return None;
+    }
+    let out = outward(point - a, axis);
+    let u = along.clamp(0.0, 1.0);
+    Some((a + axis * u + out * f64::from(cylinder.radius), u))
+}
+
 /// The unit vector across `axis` towards `to`; any across where `to` lies along the axis.
 pub(crate) fn outward(to: DVec3, axis: DVec3) -> DVec3 {
     let out = to - axis * (to.dot(axis) / axis.dot(axis));

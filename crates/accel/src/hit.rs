@@ -7,15 +7,15 @@ use crate::path::InstancePath;
 pub struct Hit {
     /// Ray parameter, in units of the length of the ray's direction; also for hits inside an instance.
     pub t: f32,
-    /// Triangles: barycentric weight of vertex 1. Spheres: 0. User shapes: theirs.
+    /// Triangles: barycentric weight of vertex 1. Spheres: 0. User shapes: theirs. Others: see the heads of their modules.
     pub u: f32,
-    /// Triangles: barycentric weight of vertex 2. Spheres: 0. User shapes: theirs.
+    /// Triangles: barycentric weight of vertex 2. Spheres: 0. User shapes: theirs. Others: see there.
     pub v: f32,
     /// The instances around the primitive, outermost first; [`InstancePath::WORLD`] for geometry of the world itself.
     pub instance: InstancePath,
     /// Index into `SceneGeometry::world`, or into the innermost instance's aggregate.
     pub geometry: u32,
-    /// Index of the triangle, sphere or user primitive within its geometry.
+    /// Index within its geometry.
     pub primitive: u32,
 }
 

@@ -1,6 +1,7 @@
 //! A primitive as a leaf holds it, and its test: what the structures that keep no blocks of their own share.
 
 use crate::build::reference::{MAX_ID, Reference};
+use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::{Geometry, Shape, Sphere};
@@ -103,6 +104,14 @@ impl Record {
                 test_other(level, geometry, index, ray, search);
             }
             RecordKind::Instance => enter(ray, search, index),
+        }
+    }
+
+    /// Look for the closest point on it; `enter` looks into an instance.
+    pub fn consider(&self, level: Level, space: &PointSpace, search: &mut PointSearch, enter: EnterPoint) {
+        match self.kind {
+            RecordKind::Instance => enter(search, self.primitive),
+            _ => search.consider(level, space, self.geometry, self.primitive),
         }
     }
 

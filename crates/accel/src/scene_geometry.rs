@@ -1,6 +1,7 @@
 //! What there is to hit: shapes, geometries, aggregates of them, and instances of aggregates.
 
-use kirkas_geometry::{AnimatedTransform, Bounds3, Ray, Vec3};
+use crate::closest::SurfacePoint;
+use kirkas_geometry::{AnimatedTransform, Bounds3, DVec3, Ray, Vec3};
 use std::sync::Arc;
 
 /// A ball's surface.
@@ -126,6 +127,12 @@ pub trait UserShape: Send + Sync {
     /// Calls `visit(t, u, v)` for the crossings with `ray.t_min < t < ray.t_max`, in increasing `t`, until it returns true
     /// ("taken"). The ray is in the space of the shape, its direction of any length.
     fn intersect(&self, primitive: u32, ray: &Ray, visit: &mut dyn FnMut(f32, f32, f32) -> bool);
+
+    /// The point of the primitive's surface that is closest to `point`, both in the space of the shape. `None`, unless
+    /// implemented: the shape then takes no part in [`Accel::closest_point`](crate::Accel::closest_point).
+    fn closest_point(&self, _primitive: u32, _point: DVec3) -> Option<SurfacePoint> {
+        None
+    }
 }
 
 /// A shape with its visibility.

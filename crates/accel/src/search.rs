@@ -5,6 +5,7 @@ use crate::path::InstancePath;
 use crate::prepared_ray::PreparedRay;
 use crate::query::Query;
 use crate::scene_geometry::Geometry;
+use core::cell::RefCell;
 use kirkas_geometry::Ray;
 
 /// Where the geometry that is being searched stands.
@@ -31,6 +32,8 @@ pub(crate) struct Search<'a, const ANY: bool> {
     pub query: Query<'a>,
     pub counters: Counters,
     pub best: Option<Hit>,
+    /// Where every hit is put, when all are asked for; `best` then stays `None`.
+    pub all: Option<&'a RefCell<Vec<Hit>>>,
     /// Boxes that are entered after this hold nothing better. Equal `t` may still win by its ids.
     pub limit: f32,
 }
@@ -38,7 +41,7 @@ pub(crate) struct Search<'a, const ANY: bool> {
 impl<'a, const ANY: bool> Search<'a, ANY> {
     pub fn new(ray: &'a Ray, ray_index: usize, query: Query<'a>) -> Self {
         let counters = Counters { rays: 1, ..Counters::default() };
-        Search { ray, ray_index, query, counters, best: None, limit: ray.t_max }
+        Search { ray, ray_index, query, counters, best: None, all: None, limit: ray.t_max }
     }
 
     /// True when nothing more needs to be looked at.
@@ -64,6 +67,10 @@ impl<'a, const ANY: bool> Search<'a, ANY> {
             return true;
         }
         if !g.opaque && self.query.filter.is_some_and(|f| !f.accept(self.ray_index, self.ray, &hit)) {
+            return false;
+        }
+        if let Some(all) = self.all {
+            all.borrow_mut().push(hit);
             return false;
         }
         self.best = Some(hit);

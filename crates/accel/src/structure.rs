@@ -1,5 +1,6 @@
 //! The closed list of structures over one level: the world with its instances, or one aggregate.
 
+use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::Geometry;
@@ -56,6 +57,15 @@ impl Structure {
             Structure::BruteForce => brute_force::search(level, ray, search, enter),
             Structure::Bvh2(tree) => tree.search(level, ray, search, enter),
             Structure::Bvh8(tree) => tree.search(level, ray, search, enter),
+        }
+    }
+
+    /// Look for the closest point of all that the level holds; `enter` looks into the instance of this index.
+    pub fn closest_point(&self, level: Level, space: &PointSpace, search: &mut PointSearch, enter: EnterPoint) {
+        match self {
+            Structure::BruteForce => brute_force::closest_point(level, space, search, enter),
+            Structure::Bvh2(tree) => tree.closest_point(level, space, search, enter),
+            Structure::Bvh8(tree) => tree.closest_point(level, space, search, enter),
         }
     }
 

@@ -1,6 +1,7 @@
 //! `bvh2`: a binary tree of boxes, split by the binned surface-area heuristic. Quick to build, a fair traversal, little memory
 //! (about 70 bytes per triangle).
 
+mod closest;
 mod node;
 mod traverse;
 mod validate;

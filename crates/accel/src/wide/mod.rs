@@ -7,6 +7,7 @@ mod arena;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod backend;
+mod closest;
 mod emit;
 mod in_flight;
 mod node;

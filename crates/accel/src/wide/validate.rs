@@ -91,7 +91,7 @@ impl Tree {
     }
 
     /// The numbers in a leaf.
-    fn leaf(&self, place: Place) -> Result<impl Iterator<Item = u32> + use<>, String> {
+    pub(super) fn leaf(&self, place: Place) -> Result<impl Iterator<Item = u32> + use<>, String> {
         let beyond = "a leaf lies beyond the arena";
         let (numbers, count) = if place.is_block() {
             (read::<Block>(&self.lines, place.line()).ok_or(beyond)?.numbers, place.count())

@@ -16,7 +16,7 @@ fn coordinate(r: &mut Random) -> f32 {
     }
 }
 
-fn point(r: &mut Random) -> Vec3 {
+pub fn point(r: &mut Random) -> Vec3 {
     Vec3::new(coordinate(r), coordinate(r), coordinate(r))
 }
 
@@ -68,7 +68,7 @@ fn placement(r: &mut Random) -> DAffine3 {
     DAffine3 { matrix3: turn * DMat3::from_diagonal(size), translation: point(r).as_dvec3() * 2.0 }
 }
 
-fn scene(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3>) {
+pub fn scene(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3>) {
     let (world, corners) = shapes(r, n);
     let aggregates: Vec<Aggregate> = (0..r.below(3)).map(|_| shapes(r, n / 4).0.into()).collect();
     let mut instances = Vec::new();
@@ -84,7 +84,7 @@ fn scene(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3>) {
     (SceneGeometry { world, aggregates, instances, shutter: (0.0, 1.0) }, corners)
 }
 
-fn ray(r: &mut Random, corners: &[Vec3]) -> Ray {
+pub fn ray(r: &mut Random, corners: &[Vec3]) -> Ray {
     let corner = |r: &mut Random| corners[r.below(corners.len() as u32) as usize];
     let origin = match r.below(4) {
         0 => corner(r),
@@ -151,7 +151,7 @@ fn an_axis_aligned_grid_is_hit_on_every_line_and_crossing() {
 }
 
 /// Disks, cylinders, curves, quads and moving triangles, many of them degenerate or coincident.
-fn solids(r: &mut Random, n: usize) -> Vec<Geometry> {
+pub fn solids(r: &mut Random, n: usize) -> Vec<Geometry> {
     let radius = |r: &mut Random| [0.0, r.unit() * 0.4, 0.25][r.below(3) as usize];
     let normal = |r: &mut Random| [Vec3::X, r.cube(), Vec3::Z * -1e-9][r.below(3) as usize];
     let points: Vec<Vec3> = (0..n).map(|_| point(r)).collect();
@@ -173,16 +173,22 @@ fn solids(r: &mut Random, n: usize) -> Vec<Geometry> {
     .into()
 }
 
+/// A scene of every shape, in the world and in instances, with points to aim at.
+pub fn scene_of_everything(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3>) {
+    let (mut scene, corners) = scene(r, n);
+    scene.world.extend(solids(r, n));
+    for a in &mut scene.aggregates {
+        a.geometries.extend(solids(r, 6));
+    }
+    (scene, corners)
+}
+
 #[test]
 fn every_structure_equals_brute_force_on_every_shape() {
     let (mut rays_cast, mut hits) = (0, 0);
     for seed in 0..60 {
         let r = &mut Random::new(500 + seed);
-        let (mut scene, corners) = scene(r, [2, 9, 40][seed as usize % 3]);
-        scene.world = solids(r, [2, 9, 40][seed as usize % 3]);
-        for a in &mut scene.aggregates {
-            a.geometries.extend(solids(r, 6));
-        }
+        let (scene, corners) = scene_of_everything(r, [2, 9, 40][seed as usize % 3]);
         let rays: Vec<Ray> = (0..500).map(|_| ray(r, &corners)).collect();
         hits += assert_agreement(&scene, &rays);
         rays_cast += 2 * rays.len();

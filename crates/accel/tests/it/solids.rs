@@ -119,7 +119,7 @@ fn quads_count_u_and_v_from_their_first_corner_and_are_met_once_on_the_fold() {
 }
 
 /// A shape of some size and place, and a point of its surface that is off the edges.
-fn shape_and_point(r: &mut Random, scale: f32) -> (Shape, DVec3) {
+pub fn shape_and_point(r: &mut Random, scale: f32) -> (Shape, DVec3) {
     let (a, b) = (r.cube() * scale, r.cube() * scale);
     let (thick, thin) = ((0.05 + r.unit()) * scale, (0.02 + 0.3 * r.unit()) * scale);
     let axis = (b - a).as_dvec3();
