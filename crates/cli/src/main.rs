@@ -7,6 +7,7 @@ mod commands;
 
 mod aov_args;
 mod aov_picture;
+mod bench_table;
 mod checkpoint;
 mod conductor;
 mod disk_files;
@@ -45,6 +46,7 @@ enum Command {
     Convert(commands::convert::Convert),
     Diff(commands::diff::Diff),
     Merge(commands::merge::Merge),
+    Bench(commands::bench::Bench),
     Schema(commands::schema::Schema),
     Completions(commands::completions::Completions),
 }
@@ -57,6 +59,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => commands::convert::run(args),
         Command::Diff(args) => commands::diff::run(args),
         Command::Merge(args) => commands::merge::run(args),
+        Command::Bench(args) => commands::bench::run(args),
         Command::Schema(args) => commands::schema::run(args),
         Command::Completions(args) => commands::completions::run(args),
     };

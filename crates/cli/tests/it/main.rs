@@ -3,6 +3,7 @@
 mod common;
 
 mod aovs;
+mod bench;
 mod bits;
 mod commands;
 mod errors;
