@@ -5,7 +5,7 @@
 //! The hull is convex, so a ray's first and last crossing of cone and balls are its entry and its exit, and no joint can
 //! leak. Neighbouring segments share a ball; each has its own entry and exit there.
 
-use crate::cylinder::outward;
+use crate::cylinder;
 use crate::local_ray::{DISTANCE_ERROR, LocalRay, without_start};
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::CurvePoint;
@@ -47,6 +47,12 @@ pub(crate) fn closest_point(ends: &[CurvePoint; 2], point: DVec3) -> (DVec3, f64
     let near = cone.closest(point - cone.a);
     let out = point - cone.a - near.center;
     (cone.a + near.center + out.try_normalize().unwrap_or(near.out) * near.radius, near.u)
+}
+
+/// Across the surface, outwards, at a point of it; of any length.
+pub(crate) fn outward(ends: &[CurvePoint; 2], point: DVec3) -> DVec3 {
+    let cone = Cone::new(ends);
+    point - cone.a - cone.closest(point - cone.a).center
 }
 
 /// A segment; positions are relative to `a`.
@@ -127,7 +133,7 @@ impl Cone {
             // The ball's center lies as far along as the point, and farther by the cone's slope times the distance from
             // the axis.
             let length = length2.sqrt();
-            let side = outward(point, self.axis);
+            let side = cylinder::outward(point, self.axis);
             let away = point.dot(side).max(0.0);
             let along = point.dot(self.axis) / length2 + away * self.growth / (length * self.k.sqrt());
             (along.clamp(0.0, 1.0), side * (self.k / length2).sqrt() - self.axis * (self.growth / length2))

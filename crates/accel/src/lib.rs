@@ -19,7 +19,7 @@
 //!
 //! ```
 //! use kirkas_accel::*;
-//! use kirkas_geometry::{Ray, Vec3};
+//! use kirkas_geometry::{DVec3, Ray, Vec3};
 //! use std::sync::Arc;
 //!
 //! let ball = Sphere { center: Vec3::ZERO, radius: 1.0 };
@@ -33,6 +33,7 @@
 //! let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), -Vec3::Z);
 //! let hit = accel.closest_hit(&ray, Query::ALL, 0, counters).unwrap();
 //! assert_eq!((hit.t, hit.primitive), (4.0, 0));
+//! assert_eq!(accel.normal(&ray, &hit), Some(DVec3::Z));
 //! assert!(!accel.any_hit(&ray.until(3.0), Query::ALL, 0, counters));
 //!
 //! let rays: Vec<Ray> = (0..8).map(|k| Ray::new(Vec3::new(0.25 * k as f32, 0.0, 5.0), -Vec3::Z)).collect();
@@ -170,6 +171,7 @@ mod instance;
 mod kind;
 mod local_ray;
 pub mod moving;
+mod normal;
 mod path;
 mod prepared_ray;
 mod primitive;

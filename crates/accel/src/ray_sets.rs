@@ -2,11 +2,10 @@
 //! 2009 ("Understanding the Efficiency of Ray Traversal on GPUs"): camera rays, occlusion rays and diffuse bounces, and
 //! random rays beside them.
 
-use crate::{Accel, Counters, Hit, Query, Shape};
+use crate::{Accel, Counters, Query};
 use kirkas_geometry::hash::{combine, unit_f32};
-use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::warp::{square_to_cosine_hemisphere, square_to_uniform_sphere};
-use kirkas_geometry::{Bounds3, DAffine3, Frame, Ray, Vec3};
+use kirkas_geometry::{Bounds3, Frame, Ray, Vec3};
 
 /// Rays on a side of the default set: 512 x 512 = 262,144.
 pub const DEFAULT_SIDE: u32 = 512;
@@ -120,7 +119,7 @@ pub fn rays(set: RaySet, setup: &Setup, nearest: impl Fn(&Ray) -> Option<Surface
 pub fn nearest_in(accel: &Accel) -> impl Fn(&Ray) -> Option<Surface> + '_ {
     |ray| {
         let hit = accel.closest_hit(ray, Query::ALL, 0, &mut Counters::default())?;
-        let normal = normal(accel, ray, &hit).filter(|n| n.is_finite());
+        let normal = accel.normal(ray, &hit).map(|n| n.as_vec3()).filter(|n| n.is_finite() && *n != Vec3::ZERO);
         Some(Surface { t: hit.t, normal: normal.unwrap_or_else(|| -ray.direction.normalize()) })
     }
 }
@@ -163,30 +162,6 @@ fn random_ray(setup: &Setup, index: u64) -> Ray {
 fn random_pair(setup: &Setup, index: u64, dimension: u64) -> (f32, f32) {
     let bits = combine(combine(setup.seed, index), dimension);
     (unit_f32(bits as u32), unit_f32((bits >> 32) as u32))
-}
-
-fn normal(accel: &Accel, ray: &Ray, hit: &Hit) -> Option<Vec3> {
-    let scene = accel.scene_geometry();
-    let (mut geometries, mut instances) = (&scene.world, &scene.instances);
-    let mut object_from_world = DAffine3::IDENTITY;
-    for index in hit.instance.iter() {
-        let instance = &instances[index as usize];
-        object_from_world = instance.outer_from_object.at(f64::from(ray.time)).inverse() * object_from_world;
-        let aggregate = &scene.aggregates[instance.aggregate];
-        (geometries, instances) = (&aggregate.geometries, &aggregate.instances);
-    }
-    let normal = match &geometries[hit.geometry as usize].shape {
-        Shape::Triangles { positions, indices } => {
-            let [a, b, c] = indices[hit.primitive as usize].map(|k| positions[k as usize]);
-            (b - a).cross(c - a)
-        }
-        Shape::Spheres(spheres) => {
-            let p = object_from_world.transform_point3(ray.at(hit.t).as_dvec3());
-            p.as_vec3() - spheres[hit.primitive as usize].center
-        }
-        _ => return None,
-    };
-    Some(transform_normal(&object_from_world, normal.as_dvec3()).normalize().as_vec3())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use kirkas_accel::*;
-use kirkas_geometry::{DVec3, Ray, Vec3};
+use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Ray, Vec3};
 use std::sync::{Arc, Mutex};
 
 pub fn disk(center: Vec3, normal: Vec3, radius: f32) -> Shape {
@@ -252,4 +252,60 @@ fn curves_are_where_their_distance_is_nothing() {
         }
     }
     assert!(hits > 1000 && misses > 1000, "{hits} {misses}");
+}
+
+#[test]
+fn normals_stand_on_the_surface_and_out_of_it() {
+    let r = &mut Random::new(2);
+    let mut checked = 0;
+    for _ in 0..6000 {
+        let shape = match r.below(6) {
+            0 => Shape::Spheres(Arc::new(vec![Sphere { center: r.cube(), radius: r.unit() }])),
+            1 => triangles(&[[r.cube(), r.cube(), r.cube()]]),
+            _ => shape_and_point(r, 1.0).0,
+        };
+        let is_round = matches!(shape, Shape::Spheres(_) | Shape::Cylinders(_) | Shape::Curves { .. });
+        let accel = build(AccelKind::BruteForce, &world(vec![shape.clone()]));
+        let origin = r.cube() * 4.0;
+        let ray = Ray::new(origin, r.cube() - origin);
+        let Some(hit) = closest(&accel, &ray) else { continue };
+        let normal = accel.normal(&ray, &hit).unwrap();
+        assert!((normal.length() - 1.0).abs() < 1e-12);
+        // Rays beside it, a little off, meet the plane through the point across the normal.
+        let to = |hit: &Hit, ray: &Ray| ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t);
+        let at = to(&hit, &ray);
+        let beside = Ray { origin: ray.origin + r.cube() * 1e-3, ..ray };
+        let slant = normal.dot(ray.direction.as_dvec3().normalize());
+        if let Some(other) = closest(&accel, &beside).filter(|h| (h.u - hit.u).abs() < 0.05 && slant.abs() > 0.3) {
+            let off = to(&other, &beside) - at;
+            if off.length() < 0.01 {
+                assert!(normal.dot(off).abs() < 0.02 * off.length() + 1e-4, "{normal} {off} {}", text(&shape));
+                checked += 1;
+            }
+        }
+        let is_outside = !is_round || crossings(shape, &ray).len() == 2;
+        assert!(!is_round || !is_outside || slant < 1e-6, "outwards: {normal} {ray:?}");
+    }
+    assert!(checked > 1000, "{checked}");
+}
+
+#[test]
+fn normals_of_instances_are_those_of_the_world() {
+    let stretch = DAffine3::from_scale(DVec3::new(1.0, 2.0, 1.0));
+    let turn = DAffine3 { matrix3: kirkas_geometry::transform::rotation(DVec3::Z, 90.0), ..DAffine3::IDENTITY };
+    let instance = |aggregate, m| Instance { aggregate, outer_from_object: AnimatedTransform::still(m), mask: 1 };
+    let ball = Shape::Spheres(Arc::new(vec![Sphere { center: Vec3::ZERO, radius: 1.0 }]));
+    let scene = SceneGeometry {
+        aggregates: vec![
+            vec![geometry(ball)].into(),
+            Aggregate { geometries: vec![], instances: vec![instance(0, stretch)] },
+        ],
+        instances: vec![instance(1, turn)],
+        ..SceneGeometry::default()
+    };
+    // In the world: x^2 / 4 + y^2 + z^2 = 1, of which the gradient at (x, y) is (x / 4, y).
+    let ray = Ray::new(Vec3::new(1.2, 5.0, 0.0), -Vec3::Y);
+    let accel = build(AccelKind::Bvh2, &scene);
+    let normal = accel.normal(&ray, &closest(&accel, &ray).unwrap()).unwrap();
+    assert!((normal - DVec3::new(0.3, 0.8, 0.0).normalize()).length() < 1e-6, "{normal}");
 }

@@ -1,6 +1,7 @@
 //! A ray that starts on a surface, moved off it by the error bound of the point, never meets that surface again.
 
 use crate::common::{Random, build, closest, triangles, world};
+use crate::solids::{curve, cylinder, disk};
 use kirkas_accel::{AccelKind, Shape, Sphere};
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::{DVec3, Ray, Vec3};
@@ -72,6 +73,42 @@ fn a_sphere_is_left_for_good_and_met_on_its_far_side() {
                 } else {
                     assert!(chord < slack);
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn disks_cylinders_and_curves_are_left_for_good() {
+    for (seed, scale) in [(8, 1e-6_f32), (9, 1.0), (10, 1e6)] {
+        let r = &mut Random::new(seed);
+        for _ in 0..20_000 {
+            let (a, b) = (r.cube() * 3.0 * scale, r.cube() * scale);
+            let (thin, thick) = ((0.01 + 0.3 * r.unit()) * scale, (0.01 + r.unit()) * scale);
+            let axis = (b - a).as_dvec3();
+            let side = axis.cross(r.cube().as_dvec3()).normalize();
+            let along = f64::from(r.unit());
+            let sine = f64::from(thick - thin) / axis.length();
+            let (shape, point, normal) = match r.below(3) {
+                0 => (disk(a, b - a, thick), a.as_dvec3() + side * (f64::from(thick) * along), axis.normalize()),
+                1 => (cylinder(a, b, thick), a.as_dvec3() + axis * along + side * f64::from(thick), side),
+                _ if sine.abs() < 1.0 => {
+                    let normal = side * (1.0 - sine * sine).sqrt() - axis * (sine / axis.length());
+                    let radius = f64::from(thin) + f64::from(thick - thin) * along;
+                    (curve(&[(a, thin), (b, thick)]), a.as_dvec3() + axis * along + normal * radius, normal)
+                }
+                _ => continue,
+            };
+            let is_flat = matches!(shape, Shape::Disks(_));
+            let accel = build(AccelKind::Bvh2, &world(vec![shape]));
+            let error = (point.abs() + axis.abs()) * f64::from(gamma(5));
+            let mut direction = r.cube();
+            if r.below(4) == 0 {
+                direction = (side.cross(normal) + normal * f64::from(r.unit() * 1e-4)).as_vec3();
+            }
+            let origin = offset_origin(point, error, normal, direction.as_dvec3());
+            if is_flat || direction.as_dvec3().dot(normal) > 0.0 {
+                assert_eq!(closest(&accel, &Ray::new(origin, direction)), None, "{scale} {a} {b} {thin} {thick}");
             }
         }
     }
