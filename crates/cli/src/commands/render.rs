@@ -139,6 +139,8 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let prepared = prepare(&scene.description, &scene.assets(), &options);
     let mut prepared = prepared.map_err(|d| Problem::from(scene.failure(d)))?;
     seconds.build = build_started.elapsed().as_secs_f64();
+    // A moment was asked for.
+    prepared.warnings.retain(|w| args.time.is_none() || w.code != "no-shutter");
     let warnings = scene.failure([scene.warnings.clone(), prepared.warnings.clone(), scene.mesh_warnings()].concat());
     if !args.quiet {
         report::print(&warnings.sources, &warnings.diagnostics);

@@ -243,6 +243,18 @@ fn the_frame_rate_is_told_and_time_is_another_thing() {
 }
 
 #[test]
+fn a_closed_shutter_is_suspicious_only_where_no_moment_is_asked_for() {
+    let f = Folder::with_scene("film_shutter", EVERYTHING);
+    let said = |args: &[&str]| {
+        let closed = ["render", "scene.toml", "--spp", "1", "-o", "a.png", "-D", "cameras.main.shutter=[0, 0]"];
+        f.ok(&[&closed, args].concat()).stderr
+    };
+    assert!(said(&[]).contains("no-shutter"));
+    assert_eq!(said(&["--time", "0.5"]), "");
+    assert_eq!(said(&["--frames", "2..3"]), "");
+}
+
+#[test]
 fn bad_frames_are_told_of() {
     let f = Folder::with_scene("film_errors", BALL);
     let textured = BALL.replace("reflectance = [0.8, 0.2, 0.1]", "reflectance = \"t\"")
