@@ -22,7 +22,7 @@ impl Accel {
         for index in hit.instance.iter() {
             let instance = &instances[index as usize];
             let time = f64::from(ray.time).clamp(open, close);
-            world_from_object = world_from_object * instance.outer_from_object.at(time);
+            world_from_object *= instance.outer_from_object.at(time);
             let aggregate = &self.scene.aggregates[instance.aggregate];
             (geometries, instances) = (&aggregate.geometries, &aggregate.instances);
         }

@@ -167,9 +167,9 @@ fn random_pair(setup: &Setup, index: u64, dimension: u64) -> (f32, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{AccelKind, Aggregate, Geometry, Instance, SceneGeometry, Serial};
+    use crate::{AccelKind, Aggregate, Geometry, Instance, SceneGeometry, Serial, Shape};
     use kirkas_geometry::transform::rotation;
-    use kirkas_geometry::{AnimatedTransform, DVec3};
+    use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
 
     /// A camera at the height of 3 above the disk of radius 2 in the plane y = 0.
     fn setup() -> Setup {
