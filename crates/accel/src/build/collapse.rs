@@ -141,9 +141,9 @@ fn weigh(node: &Node, base: usize, entries: &[Entry], costs: Costs) -> Entry {
     });
     // `sums[i]`: as exactly two groups that share `i + 2` children.
     let mut sums = [f32::INFINITY; WIDTH - 1];
-    for i in 0..WIDTH - 1 {
+    for (i, sum) in sums.iter_mut().enumerate() {
         for k in 0..=i {
-            sums[i] = least(sums[i], left.cost[k] + right.cost[i - k]);
+            *sum = least(*sum, left.cost[k] + right.cost[i - k]);
         }
     }
     let area = half_area_around(node);

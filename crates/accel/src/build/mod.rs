@@ -7,6 +7,8 @@ pub(crate) mod collapse;
 pub(crate) mod costs;
 mod lanes;
 #[allow(dead_code)]
+mod layout;
+#[allow(dead_code)]
 pub(crate) mod morton;
 mod parallel;
 mod partition;

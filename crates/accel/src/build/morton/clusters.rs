@@ -2,6 +2,7 @@
 
 use super::codes::Key;
 use super::leaves;
+use crate::build::layout::{Cluster, Grove};
 use crate::build::reference::{Box4, Reference};
 use std::ops::Range;
 
@@ -12,46 +13,18 @@ const SHRINK: usize = 8;
 /// Rounds of merging; each adds at most one level.
 pub(super) const MAX_ROUNDS: usize = 20;
 
-/// A leaf, or two clusters merged.
-#[derive(Clone, Copy)]
-pub(super) struct Cluster {
-    pub around: Box4,
-    /// The leaf's run in the order of its grove, begin and end; or the two clusters.
-    pub parts: [u32; 2],
-    /// References below.
-    pub references: u32,
-    /// Leaves below; one for a leaf.
-    pub leaves: u32,
-}
-
-pub(super) struct Grove {
-    keys: Range<usize>,
-    /// Indices of references.
-    pub order: Vec<u32>,
-    /// Leaves first.
-    pub clusters: Vec<Cluster>,
-    /// Those that are in no other.
-    pub roots: Vec<u32>,
-}
-
-impl Grove {
-    /// To grow over these keys.
-    pub fn new(keys: Range<usize>) -> Self {
-        Grove { keys, order: Vec::new(), clusters: Vec::new(), roots: Vec::new() }
-    }
-
-    pub fn grow(&mut self, keys: &[Key], references: &[Reference]) {
-        let Grove { keys: range, order, clusters, roots } = self;
-        order.reserve_exact(range.len());
-        clusters.reserve(range.len() / 2);
-        leaves::scan(keys, range.clone(), references, order, &mut |order, run| {
-            let around = order[run.clone()].iter().fold(Box4::EMPTY, |b, &i| b.union(references[i as usize].0));
-            let parts = [run.start as u32, run.end as u32];
-            clusters.push(Cluster { around, parts, references: run.len() as u32, leaves: 1 });
-        });
-        roots.extend(0..clusters.len() as u32);
-        merge(clusters, roots);
-    }
+/// The grove over these keys, and those of its clusters that are in no other.
+pub(super) fn grow(keys: &[Key], range: Range<usize>, references: &[Reference]) -> (Grove, Vec<u32>) {
+    let mut order = Vec::with_capacity(range.len());
+    let mut clusters = Vec::with_capacity(range.len() / 2);
+    leaves::scan(keys, range, references, &mut order, &mut |order, run| {
+        let around = order[run.clone()].iter().fold(Box4::EMPTY, |b, &i| b.union(references[i as usize].0));
+        let parts = [run.start as u32, run.end as u32];
+        clusters.push(Cluster { around, parts, references: run.len() as u32, leaves: 1 });
+    });
+    let mut roots: Vec<u32> = (0..clusters.len() as u32).collect();
+    merge(&mut clusters, &mut roots);
+    (Grove { order, clusters }, roots)
 }
 
 /// Merge clusters that are each other's best match, again and again.
@@ -95,10 +68,8 @@ fn best_matches(boxes: &[Box4], matches: &mut Vec<u32>) {
     let mut ahead = [[f32::INFINITY; REACH]; REACH];
     for i in 0..boxes.len() {
         let mut own = [f32::INFINITY; REACH];
-        for k in 0..REACH {
-            if let Some(other) = boxes.get(i + k + 1) {
-                own[k] = boxes[i].union(*other).half_area();
-            }
+        for (area, other) in own.iter_mut().zip(&boxes[i + 1..]) {
+            *area = boxes[i].union(*other).half_area();
         }
         // Places from the first within reach on, so that the first wins.
         let mut best = (f32::INFINITY, i);
@@ -108,9 +79,9 @@ fn best_matches(boxes: &[Box4], matches: &mut Vec<u32>) {
                 best = (area, i - (k + 1));
             }
         }
-        for k in 0..REACH {
-            if own[k] < best.0 {
-                best = (own[k], i + k + 1);
+        for (k, area) in own.into_iter().enumerate() {
+            if area < best.0 {
+                best = (area, i + k + 1);
             }
         }
         matches.push(best.1 as u32);

@@ -6,15 +6,14 @@
 
 mod clusters;
 mod codes;
-mod layout;
 mod leaves;
 mod top;
 
 use super::binary::{BinaryTree, MAX_DEPTH};
+use super::layout::{self, Grove};
 use super::parallel::for_each;
 use super::reference::Reference;
 use crate::Executor;
-use clusters::Grove;
 
 /// About how many references a grove spans.
 const GROVE: usize = 1 << 15;
@@ -24,11 +23,22 @@ pub(crate) fn build(references: Vec<Reference>, executor: &dyn Executor) -> Bina
     if references.is_empty() {
         return BinaryTree { nodes: Vec::new(), root: None, references };
     }
-    let keys = codes::sorted(&references, executor);
-    let mut groves: Vec<Grove> = leaves::cuts(&keys, GROVE).into_iter().map(Grove::new).collect();
-    for_each(&mut groves, executor, &|grove: &mut Grove| grove.grow(&keys, &references));
-    let top = top::over(&groves, MAX_DEPTH - clusters::MAX_ROUNDS, executor);
+    let (groves, roots) = plant(&references, executor);
+    let top = top::over(&groves, &roots, MAX_DEPTH - clusters::MAX_ROUNDS, executor);
     layout::lay_out(&references, &groves, &top, executor)
+}
+
+/// Groves over all references, and their roots: grove and cluster.
+fn plant(references: &[Reference], executor: &dyn Executor) -> (Vec<Grove>, Vec<(usize, u32)>) {
+    let keys = codes::sorted(references, executor);
+    let mut grown: Vec<_> = leaves::cuts(&keys, GROVE).into_iter().map(|range| (range, None)).collect();
+    for_each(&mut grown, executor, &|(range, grown)| *grown = Some(clusters::grow(&keys, range.clone(), references)));
+    let (mut groves, mut all_roots) = (Vec::new(), Vec::new());
+    for (i, (grove, roots)) in grown.into_iter().filter_map(|g| g.1).enumerate() {
+        groves.push(grove);
+        all_roots.extend(roots.into_iter().map(|root| (i, root)));
+    }
+    (groves, all_roots)
 }
 
 #[cfg(test)]

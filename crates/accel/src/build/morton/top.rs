@@ -1,43 +1,19 @@
 //! The tree over the roots of all groves.
 
-use super::clusters::Grove;
 use crate::Executor;
 use crate::build::binary::{BinaryTree, Child};
 use crate::build::binned_sah;
 use crate::build::costs::Costs;
-use crate::build::reference::{Box4, Reference};
-
-/// A part of the tree.
-pub(super) struct Part {
-    pub what: What,
-    pub around: Box4,
-    /// References below.
-    pub references: usize,
-    /// Leaves below.
-    pub leaves: usize,
-    /// Levels above the roots of groves.
-    levels: usize,
-}
-
-pub(super) enum What {
-    /// Grove and cluster.
-    Root(usize, u32),
-    Pair(Box<[Part; 2]>),
-}
+use crate::build::layout::{Grove, Part};
+use crate::build::reference::Reference;
 
 /// Split by the surface-area heuristic, or halve along the curve where that takes more than `room` levels.
-pub(super) fn over(groves: &[Grove], room: usize, executor: &dyn Executor) -> Part {
-    let roots: Vec<(usize, u32)> =
-        groves.iter().enumerate().flat_map(|(g, grove)| grove.roots.iter().map(move |&c| (g, c))).collect();
-    let part = |&(grove, root): &(usize, u32)| {
-        let c = &groves[grove].clusters[root as usize];
-        let (references, leaves) = (c.references as usize, c.leaves as usize);
-        Part { what: What::Root(grove, root), around: c.around, references, leaves, levels: 0 }
-    };
+pub(super) fn over(groves: &[Grove], roots: &[(usize, u32)], room: usize, executor: &dyn Executor) -> Part {
+    let part = |&(grove, root): &(usize, u32)| Part::cluster(groves, grove, root);
     let reference = |(i, root): (usize, &(usize, u32))| Reference::new(&part(root).around.to_bounds(), 0, i as u32);
     let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), &Costs::BVH2, executor);
     let top = of_tree(&tree, tree.root.expect("groves have roots"), &|i| part(&roots[i]));
-    if top.levels <= room { top } else { halves(&roots, &part) }
+    if top.levels <= room { top } else { halves(roots, &part) }
 }
 
 fn of_tree(tree: &BinaryTree, child: Child, part: &dyn Fn(usize) -> Part) -> Part {
@@ -46,7 +22,7 @@ fn of_tree(tree: &BinaryTree, child: Child, part: &dyn Fn(usize) -> Part) -> Par
         return merged(tree.references[first..first + count].iter().map(|r| part(r.ids().1 as usize)).collect());
     }
     let [a, b] = tree.nodes[child.index()].children;
-    pair(of_tree(tree, a, part), of_tree(tree, b, part))
+    Part::pair(of_tree(tree, a, part), of_tree(tree, b, part))
 }
 
 /// The few made one: always the two that make the smallest box.
@@ -66,7 +42,7 @@ fn merged(mut parts: Vec<Part>) -> Part {
             return last;
         }
         let first = parts.swap_remove(best.1);
-        parts.push(pair(first, last));
+        parts.push(Part::pair(first, last));
     }
 }
 
@@ -75,34 +51,23 @@ fn halves(roots: &[(usize, u32)], part: &dyn Fn(&(usize, u32)) -> Part) -> Part 
         [one] => part(one),
         more => {
             let (a, b) = more.split_at(more.len() / 2);
-            pair(halves(a, part), halves(b, part))
+            Part::pair(halves(a, part), halves(b, part))
         }
     }
 }
 
-fn pair(a: Part, b: Part) -> Part {
-    let around = a.around.union(b.around);
-    let (references, leaves) = (a.references + b.references, a.leaves + b.leaves);
-    let levels = 1 + a.levels.max(b.levels);
-    Part { what: What::Pair(Box::new([a, b])), around, references, leaves, levels }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::{codes, leaves};
     use super::*;
     use crate::Serial;
+    use crate::build::morton::plant;
     use crate::build::testing::random_boxes;
 
     #[test]
     fn where_the_heuristic_runs_too_deep_the_roots_are_halved() {
-        let references = random_boxes(30_000, 4);
-        let keys = codes::sorted(&references, &Serial);
-        let mut groves: Vec<Grove> = leaves::cuts(&keys, 10_000).into_iter().map(Grove::new).collect();
-        groves.iter_mut().for_each(|grove| grove.grow(&keys, &references));
-        let roots = groves.iter().map(|g| g.roots.len()).sum::<usize>();
-        let least = roots.next_power_of_two().ilog2() as usize;
-        let [free, tight] = [100, least].map(|room| over(&groves, room, &Serial));
+        let (groves, roots) = plant(&random_boxes(30_000, 4), &Serial);
+        let least = roots.len().next_power_of_two().ilog2() as usize;
+        let [free, tight] = [100, least].map(|room| over(&groves, &roots, room, &Serial));
         assert!(free.levels > least);
         assert_eq!(tight.levels, least);
         assert_eq!((tight.references, tight.leaves), (free.references, free.leaves));
