@@ -159,7 +159,8 @@ impl Layout<'_> {
         let index = Child::node(room.first_node);
         let is_large = room.references.len() > FORK_ABOVE;
         let (own, [left, right]) = room.halves(leaves, references);
-        let children = if is_large { self.fork(left, right, on_left, on_right) } else { [on_left(left), on_right(right)] };
+        let children =
+            if is_large { self.fork(left, right, on_left, on_right) } else { [on_left(left), on_right(right)] };
         let [a, b] = boxes.map(|b| b.to_bounds());
         own.write(Node::new([&a, &b], children));
         index

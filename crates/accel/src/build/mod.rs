@@ -13,5 +13,7 @@ pub(crate) mod morton;
 mod parallel;
 mod partition;
 pub(crate) mod reference;
+#[allow(dead_code)]
+pub(crate) mod reinsertion;
 #[cfg(test)]
 pub(crate) mod testing;

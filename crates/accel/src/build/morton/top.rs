@@ -6,44 +6,27 @@ use crate::build::binned_sah;
 use crate::build::costs::Costs;
 use crate::build::layout::{Grove, Part};
 use crate::build::reference::Reference;
+use crate::build::reinsertion::{self, Effort};
+
+/// Each cluster is a leaf.
+const CLUSTERS: Costs = Costs { block: 1, leaf: 1.0, node: 1.0, max_leaf: 1 };
 
 /// Split by the surface-area heuristic, or halve along the curve where that takes more than `room` levels.
 pub(super) fn over(groves: &[Grove], roots: &[(usize, u32)], room: usize, executor: &dyn Executor) -> Part {
     let part = |&(grove, root): &(usize, u32)| Part::cluster(groves, grove, root);
     let reference = |(i, root): (usize, &(usize, u32))| Reference::new(&part(root).around.to_bounds(), 0, i as u32);
-    let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), &Costs::BVH2, executor);
+    let tree = binned_sah::build(roots.iter().enumerate().map(reference).collect(), &CLUSTERS, executor);
+    let tree = reinsertion::improve(tree, Effort::QUICK, executor);
     let top = of_tree(&tree, tree.root.expect("groves have roots"), &|i| part(&roots[i]));
     if top.levels <= room { top } else { halves(roots, &part) }
 }
 
 fn of_tree(tree: &BinaryTree, child: Child, part: &dyn Fn(usize) -> Part) -> Part {
     if child.is_leaf() {
-        let (first, count) = child.run();
-        return merged(tree.references[first..first + count].iter().map(|r| part(r.ids().1 as usize)).collect());
+        return part(tree.references[child.run().0].ids().1 as usize);
     }
     let [a, b] = tree.nodes[child.index()].children;
     Part::pair(of_tree(tree, a, part), of_tree(tree, b, part))
-}
-
-/// The few made one: always the two that make the smallest box.
-fn merged(mut parts: Vec<Part>) -> Part {
-    loop {
-        let mut best = (f32::INFINITY, 0, 0);
-        for b in 1..parts.len() {
-            for a in 0..b {
-                let area = parts[a].around.union(parts[b].around).half_area();
-                if area < best.0 {
-                    best = (area, a, b);
-                }
-            }
-        }
-        let last = parts.swap_remove(best.2);
-        if parts.is_empty() {
-            return last;
-        }
-        let first = parts.swap_remove(best.1);
-        parts.push(Part::pair(first, last));
-    }
 }
 
 fn halves(roots: &[(usize, u32)], part: &dyn Fn(&(usize, u32)) -> Part) -> Part {
