@@ -20,10 +20,15 @@ pub fn bounds(ends: &[CurvePoint; 2]) -> Bounds3 {
 
 /// Calls `visit(t, u, v)` for the crossings, nearest first, until it returns true. Without thickness there are none.
 pub fn intersect(ends: &[CurvePoint; 2], ray: &PreparedRay, mut visit: impl FnMut(f32, f32, f32) -> bool) {
-    let Some(inside) = bounds(ends).intersect(&ray.clipped, ray.inverse) else { return };
     let cone = Cone::new(ends);
     let local = LocalRay::new(ray, cone.a + cone.axis * 0.5);
+    // Most rays pass the ball around the whole by.
+    let reach = cone.axis.length() * 0.5 + f64::from(ends[0].radius.max(ends[1].radius));
+    if local.origin.length_squared() > reach * reach * 1.000_001 {
+        return;
+    }
     let Some(s) = cone.crossings(&local) else { return };
+    let Some(inside) = bounds(ends).intersect(&ray.clipped, ray.inverse) else { return };
     let mut t = s.map(|s| local.t(s));
     let start = local.start + cone.axis * 0.5;
     let near = cone.closest(start);

@@ -22,7 +22,7 @@ impl LocalRay {
     pub fn new(ray: &PreparedRay, middle: DVec3) -> Self {
         let direction = ray.clipped.direction.as_dvec3();
         let length = direction.length();
-        let direction = direction / length;
+        let direction = direction * (1.0 / length);
         let start = ray.clipped.origin.as_dvec3() - middle;
         let shift = -start.dot(direction);
         LocalRay { origin: start + direction * shift, direction, start, shift, length }

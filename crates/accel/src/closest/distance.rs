@@ -32,13 +32,13 @@ pub(super) fn closest(shape: &Shape, primitive: u32, moment: f32, space: &PointS
         }
         Shape::User(user) => {
             let found = user.closest_point(primitive, space.point)?;
-            Some(SurfacePoint { position: space.world_from_object.transform_point3(found.position), ..found })
+            Some(SurfacePoint { position: space.to_world(found.position), ..found })
         }
     }
 }
 
 fn placed((position, u): (DVec3, f64), space: &PointSpace) -> SurfacePoint {
-    SurfacePoint { position: space.world_from_object.transform_point3(position), u: u as f32, v: 0.0 }
+    SurfacePoint { position: space.to_world(position), u: u as f32, v: 0.0 }
 }
 
 fn of_sphere(sphere: &Sphere, point: DVec3) -> DVec3 {
@@ -56,8 +56,7 @@ fn of_disk(disk: &Disk, point: DVec3) -> (DVec3, f64) {
 
 /// Works on any triangle, as every place keeps a triangle one: on the corners in the world.
 fn of_triangle(corners: &Corners, space: &PointSpace) -> SurfacePoint {
-    let to_world =
-        |c: [f32; 3]| space.world_from_object.transform_point3(DVec3::new(c[0].into(), c[1].into(), c[2].into()));
+    let to_world = |c: [f32; 3]| space.to_world(DVec3::new(c[0].into(), c[1].into(), c[2].into()));
     let [a, b, c] = corners.map(to_world);
     let point = space.point_in_world;
     let (e1, e2, to) = (b - a, c - a, point - a);

@@ -5,6 +5,8 @@ use kirkas_geometry::{Bounds3, DAffine3, DVec3};
 /// Where a level stands in the world, and the point within it.
 pub(crate) struct PointSpace {
     pub world_from_object: DAffine3,
+    /// True for the world itself.
+    is_identity: bool,
     /// The point in world space, and in object space.
     pub point_in_world: DVec3,
     pub point: DVec3,
@@ -34,9 +36,16 @@ impl PointSpace {
             least_stretch: if is_similar { x * (1.0 - 1e-8) } else { 1.0 / norm(&object_from_world.matrix3) },
             most_stretch: norm(m),
             size: world_from_object.translation.abs().max_element() + point_in_world.abs().max_element(),
+            is_identity: world_from_object == DAffine3::IDENTITY,
             world_from_object,
             point_in_world,
         }
+    }
+
+    /// A point of the level in world space.
+    #[inline]
+    pub fn to_world(&self, point: DVec3) -> DVec3 {
+        if self.is_identity { point } else { self.world_from_object.transform_point3(point) }
     }
 
     /// No more than the world distance to anything in the box, as `PointSearch::consider` computes it.

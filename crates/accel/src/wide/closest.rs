@@ -2,10 +2,11 @@
 
 use super::Tree;
 use super::arena::read;
-use super::node::{Node, WIDTH};
+use super::node::{Block, Node, WIDTH};
 use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::record::IS_INSTANCE;
 use crate::search::Level;
+use kirkas_geometry::{Bounds3, Vec3};
 
 impl Tree {
     /// Look at all that may be closest; `enter` looks into an instance.
@@ -28,7 +29,12 @@ impl Tree {
                 stack[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
                 continue;
             }
-            for number in self.leaf(place).into_iter().flatten() {
+            let block = if place.is_block() { read::<Block>(&self.lines, place.line()) } else { None };
+            for (lane, number) in self.leaf(place).into_iter().flatten().enumerate() {
+                let box_of = |block: &Block| Bounds3::around(block.triangle(lane).map(Vec3::from_array));
+                if block.is_some_and(|block| search.box_distance(space, &box_of(block)).is_none()) {
+                    continue;
+                }
                 match self.numbers.ids(number) {
                     (IS_INSTANCE, index) => enter(search, index),
                     (geometry, index) => search.consider(level, space, geometry, index),
