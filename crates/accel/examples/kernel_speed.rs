@@ -1,5 +1,6 @@
 //! How fast one thread builds and traces: a displaced sphere of a million triangles, and a flake of 66,430 spheres.
-//! `cargo run --release -p kirkas-accel --example kernel_speed`. Bench noise is 5-10 %; compare within one run only.
+//! `cargo run --release -p kirkas-accel --example kernel_speed [kind [side]]`, by default `bvh8` and 708: the sphere has
+//! `2 side^2` triangles. Bench noise is 5-10 %; compare within one run only.
 
 use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, Query, SceneGeometry, Serial, Shape, Sphere};
 use kirkas_geometry::elementary::sin_cos_f32;
@@ -16,7 +17,8 @@ const SIDE: usize = 1024;
 fn main() {
     let kind =
         std::env::args().nth(1).map_or(AccelKind::Bvh8, |name| AccelKind::parse(&name).expect("a structure's name"));
-    report(kind, "displaced sphere", displaced_sphere(708));
+    let side = std::env::args().nth(2).map_or(708, |side| side.parse().expect("a number"));
+    report(kind, "displaced sphere", displaced_sphere(side));
     report(kind, "sphereflake", sphereflake(5));
 }
 

@@ -10,14 +10,29 @@ pub enum AccelKind {
     /// A tree of boxes, eight children to a node and eight triangles to a leaf.
     #[default]
     Bvh8,
+    /// A binary tree of spheres.
+    SphereHierarchy,
+    /// A kd-tree with the best planes.
+    KdTree,
+    /// A kd-tree that is built quickly.
+    KdTreeFast,
+    /// Equal cells.
+    Grid,
 }
 
 impl AccelKind {
     /// Every kind with its name, in the order of the manual.
-    pub const ALL: [(AccelKind, &str); 3] =
-        [(AccelKind::BruteForce, "brute_force"), (AccelKind::Bvh2, "bvh2"), (AccelKind::Bvh8, "bvh8")];
+    pub const ALL: [(AccelKind, &str); 7] = [
+        (AccelKind::BruteForce, "brute_force"),
+        (AccelKind::Bvh2, "bvh2"),
+        (AccelKind::Bvh8, "bvh8"),
+        (AccelKind::SphereHierarchy, "sphere_hierarchy"),
+        (AccelKind::KdTree, "kd_tree"),
+        (AccelKind::KdTreeFast, "kd_tree_fast"),
+        (AccelKind::Grid, "grid"),
+    ];
     /// Every name, in the same order.
-    pub const NAMES: [&str; 3] = ["brute_force", "bvh2", "bvh8"];
+    pub const NAMES: [&str; 7] = ["brute_force", "bvh2", "bvh8", "sphere_hierarchy", "kd_tree", "kd_tree_fast", "grid"];
 
     /// The kind of this name.
     pub fn parse(name: &str) -> Option<Self> {
@@ -30,6 +45,10 @@ impl AccelKind {
             AccelKind::BruteForce => "brute_force",
             AccelKind::Bvh2 => "bvh2",
             AccelKind::Bvh8 => "bvh8",
+            AccelKind::SphereHierarchy => "sphere_hierarchy",
+            AccelKind::KdTree => "kd_tree",
+            AccelKind::KdTreeFast => "kd_tree_fast",
+            AccelKind::Grid => "grid",
         }
     }
 }
@@ -44,6 +63,6 @@ mod tests {
             assert_eq!(AccelKind::parse(name), Some(kind));
             assert_eq!((kind.name(), listed), (name, name));
         }
-        assert_eq!(AccelKind::parse("kd_tree"), None);
+        assert_eq!(AccelKind::parse("octree"), None);
     }
 }

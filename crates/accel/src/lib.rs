@@ -5,7 +5,8 @@
 //! [`sphere`], [`UserShape`]), its own bounds pass [`Bounds3::intersect`], and `t` lies in the ray's open interval; `t` is
 //! then clamped into the interval within those bounds (and within the bounds of its instances). The nearest `t` wins, ties
 //! go to the lowest (path of instances, geometry, primitive). Box tests are monotone and equal `t` is never culled, so
-//! every tree of boxes answers exactly as [`AccelKind::BruteForce`] does, to the bit.
+//! every tree of boxes answers exactly as [`AccelKind::BruteForce`] does, to the bit. The structures of cells and of spheres
+//! allow for the roundings between a hit and its bounds, and so do as well.
 //!
 //! # What to hit
 //!
@@ -159,6 +160,7 @@ mod accel;
 mod brute_force;
 mod build;
 mod bvh2;
+mod cells;
 mod check;
 mod closest;
 pub mod curve;
@@ -166,8 +168,10 @@ pub mod cylinder;
 pub mod disk;
 mod error;
 mod executor;
+mod grid;
 mod hit;
 mod instance;
+mod kd_tree;
 mod kind;
 mod local_ray;
 pub mod moving;
@@ -182,6 +186,7 @@ mod record;
 mod scene_geometry;
 mod search;
 pub mod sphere;
+mod sphere_hierarchy;
 mod structure;
 pub mod triangle;
 mod wide;

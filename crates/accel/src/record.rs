@@ -45,6 +45,23 @@ pub(crate) fn all_references<'a>(
     primitives.chain(instances.iter().enumerate().map(|(i, instance)| (instance.bounds, IS_INSTANCE, i as u32)))
 }
 
+/// Whether a structure's records are those of each primitive and instance, once.
+pub(crate) fn check_complete<'a>(
+    held: impl Iterator<Item = &'a Record>,
+    geometries: &[Geometry],
+    instances: &[PlacedInstance],
+) -> Result<(), String> {
+    let ids = |r: &Record| {
+        if r.kind == RecordKind::Instance { (IS_INSTANCE, r.primitive) } else { (r.geometry, r.primitive) }
+    };
+    let mut held: Vec<(u32, u32)> = held.map(ids).collect();
+    held.sort_unstable();
+    let mut wanted: Vec<(u32, u32)> =
+        all_references(geometries, instances).filter(|(b, ..)| !b.is_empty()).map(|(_, g, p)| (g, p)).collect();
+    wanted.sort_unstable();
+    if held == wanted { Ok(()) } else { Err("the leaves do not hold each primitive once".into()) }
+}
+
 /// A primitive as a leaf holds it: everything its test needs, without following an index.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Record {
@@ -116,7 +133,7 @@ impl Record {
     }
 
     #[inline]
-    fn sphere(&self) -> Sphere {
+    pub fn sphere(&self) -> Sphere {
         Sphere { center: Vec3::from_array(self.corners[0]), radius: self.corners[1][0] }
     }
 }

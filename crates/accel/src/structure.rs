@@ -5,7 +5,7 @@ use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::Geometry;
 use crate::search::{Enter, Level, Search};
-use crate::{AccelKind, Executor, brute_force, bvh2, wide};
+use crate::{AccelKind, Executor, brute_force, bvh2, grid, kd_tree, sphere_hierarchy, wide};
 
 /// A structure over one level.
 #[derive(Default)]
@@ -14,12 +14,15 @@ pub(crate) enum Structure {
     BruteForce,
     Bvh2(bvh2::Tree),
     Bvh8(wide::Tree),
+    SphereHierarchy(sphere_hierarchy::Tree),
+    KdTree(kd_tree::Tree),
+    Grid(grid::Grid),
 }
 
 /// What a structure looks like.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Measures {
-    /// Inner nodes.
+    /// Inner nodes, or cells.
     pub nodes: usize,
     /// Memory.
     pub bytes: usize,
@@ -37,10 +40,17 @@ impl Structure {
         instances: &[PlacedInstance],
         executor: &dyn Executor,
     ) -> Self {
+        let kd_tree = |planes| Structure::KdTree(kd_tree::Tree::build(planes, geometries, instances, executor));
         match kind {
             AccelKind::BruteForce => Structure::BruteForce,
             AccelKind::Bvh2 => Structure::Bvh2(bvh2::Tree::build(geometries, instances, executor)),
             AccelKind::Bvh8 => Structure::Bvh8(wide::Tree::build(geometries, instances, executor)),
+            AccelKind::SphereHierarchy => {
+                Structure::SphereHierarchy(sphere_hierarchy::Tree::build(geometries, instances, executor))
+            }
+            AccelKind::KdTree => kd_tree(kd_tree::Planes::All),
+            AccelKind::KdTreeFast => kd_tree(kd_tree::Planes::Some),
+            AccelKind::Grid => Structure::Grid(grid::Grid::build(geometries, instances)),
         }
     }
 
@@ -57,6 +67,9 @@ impl Structure {
             Structure::BruteForce => brute_force::search(level, ray, search, enter),
             Structure::Bvh2(tree) => tree.search(level, ray, search, enter),
             Structure::Bvh8(tree) => tree.search(level, ray, search, enter),
+            Structure::SphereHierarchy(tree) => tree.search(level, ray, search, enter),
+            Structure::KdTree(tree) => tree.search(level, ray, search, enter),
+            Structure::Grid(grid) => grid.search(level, ray, search, enter),
         }
     }
 
@@ -66,6 +79,9 @@ impl Structure {
             Structure::BruteForce => brute_force::closest_point(level, space, search, enter),
             Structure::Bvh2(tree) => tree.closest_point(level, space, search, enter),
             Structure::Bvh8(tree) => tree.closest_point(level, space, search, enter),
+            Structure::SphereHierarchy(tree) => tree.closest_point(level, space, search, enter),
+            Structure::KdTree(tree) => tree.closest_point(level, space, search, enter),
+            Structure::Grid(grid) => grid.closest_point(level, space, search, enter),
         }
     }
 
@@ -79,6 +95,15 @@ impl Structure {
             Structure::Bvh8(t) => {
                 Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
             }
+            Structure::SphereHierarchy(t) => {
+                Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
+            }
+            Structure::KdTree(t) => {
+                Measures { nodes: t.node_count(), bytes: t.bytes(), sah_cost: t.sah_cost(), depth: t.depth() }
+            }
+            Structure::Grid(g) => {
+                Measures { nodes: g.cell_count(), bytes: g.bytes(), sah_cost: g.sah_cost(), depth: 1 }
+            }
         }
     }
 
@@ -88,6 +113,9 @@ impl Structure {
             Structure::BruteForce => Ok(()),
             Structure::Bvh2(tree) => tree.validate(geometries, instances),
             Structure::Bvh8(tree) => tree.validate(geometries, instances),
+            Structure::SphereHierarchy(tree) => tree.validate(geometries, instances),
+            Structure::KdTree(tree) => tree.validate(geometries, instances),
+            Structure::Grid(grid) => grid.validate(geometries, instances),
         }
     }
 }

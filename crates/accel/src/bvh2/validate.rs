@@ -5,14 +5,14 @@ use crate::build::binary::{Child, MAX_DEPTH};
 use crate::build::costs::Costs;
 use crate::instance::PlacedInstance;
 use crate::primitive;
-use crate::record::{IS_INSTANCE, all_references};
+use crate::record::{IS_INSTANCE, Record, check_complete};
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 
 impl Tree {
     /// Each primitive in exactly one place, each box around all below it, depth within the stack.
     pub fn validate(&self, geometries: &[Geometry], instances: &[PlacedInstance]) -> Result<(), String> {
-        let mut held: Vec<(u32, u32)> = Vec::new();
+        let mut held: Vec<&Record> = Vec::new();
         let depth = self.try_walk(|child, bounds, _| {
             if !child.is_leaf() {
                 return Ok(());
@@ -27,22 +27,14 @@ impl Tree {
                 if bounds.union(own) != bounds {
                     return Err(format!("a box does not hold primitive {} of geometry {}", r.primitive, r.geometry));
                 }
-                held.push((r.geometry, r.primitive));
+                held.push(r);
             }
             Ok(())
         })?;
         if depth > MAX_DEPTH {
             return Err(format!("{depth} levels of nodes; the stack holds {MAX_DEPTH}"));
         }
-        held.extend(self.unbounded.iter().map(|r| (r.geometry, r.primitive)));
-        held.sort_unstable();
-        let mut wanted: Vec<(u32, u32)> =
-            all_references(geometries, instances).filter(|(b, ..)| !b.is_empty()).map(|(_, g, p)| (g, p)).collect();
-        wanted.sort_unstable();
-        if held != wanted {
-            return Err("the leaves do not hold each primitive once".into());
-        }
-        Ok(())
+        check_complete(held.into_iter().chain(&self.unbounded), geometries, instances)
     }
 
     /// Levels of inner nodes.

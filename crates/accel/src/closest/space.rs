@@ -1,5 +1,6 @@
 //! The space of a level, as a search for the closest point sees it.
 
+use crate::scene_geometry::Sphere;
 use kirkas_geometry::{Bounds3, DAffine3, DVec3};
 
 /// Where a level stands in the world, and the point within it.
@@ -46,6 +47,15 @@ impl PointSpace {
     #[inline]
     pub fn to_world(&self, point: DVec3) -> DVec3 {
         if self.is_identity { point } else { self.world_from_object.transform_point3(point) }
+    }
+
+    /// As [`PointSpace::box_distance`] for what a ball holds.
+    #[inline]
+    pub fn ball_distance(&self, ball: &Sphere) -> f64 {
+        let (center, radius) = (ball.center.as_dvec3(), f64::from(ball.radius));
+        let off = ((center - self.point).length() - radius).max(0.0);
+        let size = center.abs().max_element() + radius + self.point.abs().max_element();
+        off * self.least_stretch * (1.0 - 1e-12) - 1e-12 * (self.size + self.most_stretch * size)
     }
 
     /// No more than the world distance to anything in the box, as `PointSearch::consider` computes it.

@@ -3,6 +3,7 @@
 mod agreement;
 mod common;
 mod faults;
+mod hostile;
 mod meshes;
 mod moving;
 mod nested;
