@@ -68,6 +68,10 @@ pub(crate) fn closest_point(cylinder: &Cylinder, point: DVec3) -> Option<(DVec3,
 
 /// The unit vector across `axis` towards `to`; any across where `to` lies along the axis.
 pub(crate) fn outward(to: DVec3, axis: DVec3) -> DVec3 {
-    let out = to - axis * (to.dot(axis) / axis.dot(axis));
-    out.try_normalize().unwrap_or_else(|| axis.normalize().any_orthonormal_vector())
+    let across = |v: DVec3| v - axis * (v.dot(axis) / axis.dot(axis));
+    // What is left by rounding alone points anywhere; what is little more needs another pass.
+    let out = across(to);
+    let is_sure = out.length_squared() > 16.0 * f64::EPSILON * f64::EPSILON * to.length_squared();
+    let out = if is_sure { across(out).try_normalize() } else { None };
+    out.unwrap_or_else(|| axis.normalize().any_orthonormal_vector())
 }
