@@ -28,7 +28,7 @@ pub fn intersect(ends: &[CurvePoint; 2], ray: &PreparedRay, mut visit: impl FnMu
         return;
     }
     let Some(s) = cone.crossings(&local) else { return };
-    let Some(inside) = bounds(ends).intersect(&ray.clipped, ray.inverse) else { return };
+    let Some(inside) = bounds(ends).intersect(&ray.clipped, ray.inverse()) else { return };
     let mut t = s.map(|s| local.t(s));
     let start = local.start + cone.axis * 0.5;
     let near = cone.closest(start);

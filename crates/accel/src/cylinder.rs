@@ -34,7 +34,7 @@ pub fn intersect(cylinder: &Cylinder, ray: &PreparedRay, mut visit: impl FnMut(f
     if reach2.is_nan() || reach2 <= 0.0 {
         return;
     }
-    let Some(inside) = bounds(cylinder).intersect(&ray.clipped, ray.inverse) else { return };
+    let Some(inside) = bounds(cylinder).intersect(&ray.clipped, ray.inverse()) else { return };
     let reach = (reach2 / speed2).sqrt();
     let s = [nearest - reach, nearest + reach];
     let mut t = s.map(|s| local.t(s));

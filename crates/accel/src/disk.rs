@@ -39,7 +39,7 @@ pub fn intersect(disk: &Disk, ray: &PreparedRay) -> Option<(f32, f32, f32)> {
     if square.is_nan() || square >= radius * radius {
         return None;
     }
-    let inside = bounds(disk).intersect(&ray.clipped, ray.inverse)?;
+    let inside = bounds(disk).intersect(&ray.clipped, ray.inverse())?;
     Some((ray.accept(t, inside)?, (square.sqrt() / radius) as f32, 0.0))
 }
 

@@ -83,7 +83,7 @@ impl PlacedInstance {
         if outer.clipped.mask & self.mask == 0 {
             return None;
         }
-        self.bounds.intersect(&outer.clipped, outer.inverse)
+        self.bounds.intersect(&outer.clipped, outer.inverse())
     }
 }
 

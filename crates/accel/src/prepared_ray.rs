@@ -14,9 +14,11 @@ pub struct PreparedRay {
     /// Hits lie before this.
     pub(crate) t_max: f32,
     /// One over the direction.
-    pub(crate) inverse: Vec3,
+    pub(crate) inverse: [f32; 3],
+    /// 1 where the direction is negative, so that the high plane of a box is met first.
+    pub(crate) is_negative: [u32; 3],
     /// The axes, the one along which the ray runs fastest last (each below 3).
-    pub(crate) axes: [usize; 3],
+    pub(crate) axes: [u32; 3],
     /// The origin along these axes.
     pub(crate) sheared_origin: [f32; 3],
     /// How far the ray moves along the first two axes for each step along the last.
@@ -33,23 +35,35 @@ impl PreparedRay {
     /// A ray whose hits lie within the open interval `t`, clamped into the interval that `clipped` carries.
     #[inline]
     pub(crate) fn clipped(clipped: Ray, t: (f32, f32)) -> Option<Self> {
-        let d = clipped.direction;
-        let usable = clipped.origin.is_finite() && d.is_finite() && d != Vec3::ZERO && t.0 < t.1;
+        let (o, d) = (clipped.origin.to_array(), clipped.direction.to_array());
+        let [x, y, z] = d.map(f32::abs);
+        let usable = clipped.origin.is_finite() && clipped.direction.is_finite() && x + y + z != 0.0 && t.0 < t.1;
         if !usable {
             return None;
         }
-        let a = d.abs();
-        let z = if a.x > a.y { if a.x > a.z { 0 } else { 2 } } else { if a.y > a.z { 1 } else { 2 } };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        // Without branches, since nothing is known of the next ray: y or z, and then x if it beats that.
+        let last = if y > z { 1 } else { 2 };
+        let last = if x > y && x > z { 0 } else { last };
+        let axes: [u32; 3] = AXES[last];
+        let [u, v, w] = axes.map(|k| k as usize & 3);
+        let (o4, d4) = ([o[0], o[1], o[2], 0.0], [d[0], d[1], d[2], 0.0]);
+        let inverse = safe_inverse(Vec3::from_array(d)).to_array();
         Some(PreparedRay {
             clipped,
             t_min: t.0,
             t_max: t.1,
-            inverse: safe_inverse(d),
+            inverse,
+            is_negative: inverse.map(|i| i.to_bits() >> 31),
             axes,
-            sheared_origin: axes.map(|k| clipped.origin[k]),
-            shear: [d[axes[0]] / d[z], d[axes[1]] / d[z]],
+            sheared_origin: [o4[u], o4[v], o4[w]],
+            shear: [d4[u] / d4[w], d4[v] / d4[w]],
         })
+    }
+
+    /// One over the direction.
+    #[inline]
+    pub(crate) fn inverse(&self) -> Vec3 {
+        Vec3::from_array(self.inverse)
     }
 
     /// A crossing, clamped into what `Bounds3::intersect` gave for its bounds, if it may be a hit.
@@ -69,6 +83,9 @@ impl PreparedRay {
         t > self.t_min && t < self.t_max
     }
 }
+
+/// The axes in cyclic order, by the last of them.
+const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// `t` moved into `[near, far]`; NaN stays.
 #[inline]

@@ -78,7 +78,7 @@ fn intersect_user(
     ray: &PreparedRay,
     mut visit: impl FnMut(f32, f32, f32) -> bool,
 ) {
-    let Some(inside) = user.bounds(primitive).intersect(&ray.clipped, ray.inverse) else { return };
+    let Some(inside) = user.bounds(primitive).intersect(&ray.clipped, ray.inverse()) else { return };
     let open = Ray { t_min: ray.t_min, t_max: ray.t_max, ..ray.clipped };
     user.intersect(primitive, &open, &mut |t, u, v| {
         let clamped = clamp(t, inside);

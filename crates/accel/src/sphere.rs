@@ -26,7 +26,7 @@ pub fn intersect(sphere: &Sphere, ray: &PreparedRay, mut visit: impl FnMut(f32) 
     if reach2.is_nan() || reach2 <= 0.0 {
         return;
     }
-    let Some(inside) = bounds(sphere).intersect(&ray.clipped, ray.inverse) else { return };
+    let Some(inside) = bounds(sphere).intersect(&ray.clipped, ray.inverse()) else { return };
     let c = to_origin.dot(to_origin) - radius2;
     let q = half_b + (a * reach2).sqrt().copysign(half_b);
     let (t0, t1) = if half_b < 0.0 { (q / a, c / q) } else { (c / q, q / a) };

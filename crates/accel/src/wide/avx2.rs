@@ -1,10 +1,12 @@
 //! The arithmetic of a step in AVX2: operation for operation that of [`Portable`](super::backend::Portable).
 
-use super::backend::{Backend, Keys};
+use super::backend::{Backend, Keys, Weights};
 use super::node::{Block, Node};
 use super::packet::{Frustum, PACKET, PacketRays};
-use super::walker::RayLanes;
+use crate::prepared_ray::PreparedRay;
+use crate::triangle::{self, Corners};
 use core::arch::x86_64::*;
+use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::FAR_PAD;
 
 /// Code for CPUs with AVX2.
@@ -12,7 +14,7 @@ pub(super) struct Avx2;
 
 impl Backend for Avx2 {
     #[inline(always)]
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
         // SAFETY: the caller promises AVX2 and a valid node.
         unsafe { boxes::<ANY>(node, ray, limit) }
     }
@@ -30,9 +32,15 @@ impl Backend for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
+    unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32 {
         // SAFETY: the caller promises AVX2 and a valid block.
-        unsafe { edges(block, ray) }
+        unsafe { edges(block, ray, weights) }
+    }
+
+    #[inline(always)]
+    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
+        // SAFETY: the caller promises AVX2.
+        unsafe { crossing(corners, ray, weights) }
     }
 
     #[inline(always)]
@@ -50,17 +58,19 @@ impl Backend for Avx2 {
 
 #[inline]
 #[target_feature(enable = "avx2")]
-unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
-    let planes = node.cast::<u8>();
-    // SAFETY: `first_plane` is the byte offset of one of the node's 6 rows of planes.
+unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
+    let planes = node.cast::<f32>();
+    let origin = ray.clipped.origin.to_array();
+    // SAFETY: the node begins with 6 rows of 8 planes.
     let slab = |k: usize| unsafe {
-        let (o, i) = (_mm256_set1_ps(ray.origin[k]), _mm256_set1_ps(ray.inverse[k]));
-        let enter = _mm256_load_ps(planes.add(ray.first_plane[k] as usize).cast());
-        let leave = _mm256_load_ps(planes.add(ray.first_plane[k] as usize ^ 32).cast());
+        let (o, i) = (_mm256_set1_ps(origin[k]), _mm256_set1_ps(ray.inverse[k]));
+        let first = 16 * k + 8 * ray.is_negative[k] as usize;
+        let enter = _mm256_load_ps(planes.add(first));
+        let leave = _mm256_load_ps(planes.add(first ^ 8));
         (_mm256_mul_ps(_mm256_sub_ps(enter, o), i), _mm256_mul_ps(_mm256_sub_ps(leave, o), i))
     };
     let slabs = [slab(0), slab(1), slab(2)];
-    let (near, far) = interval(slabs, _mm256_set1_ps(ray.t_min), _mm256_set1_ps(limit));
+    let (near, far) = interval(slabs, _mm256_set1_ps(ray.clipped.t_min), _mm256_set1_ps(limit));
     let missed = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far));
     let missed = _mm256_srli_epi32::<16>(missed);
     let keys = if ANY {
@@ -92,7 +102,7 @@ fn interval([x, y, z]: [(__m256, __m256); 3], t_min: __m256, limit: __m256) -> (
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
-    let planes = node.cast::<u8>();
+    let planes = node.cast::<f32>();
     let [o, i] = [&packet.origin, &packet.inverse];
     // The least (or greatest) distance of a plane to any origin, along any direction: of four products.
     let products = |k: usize, plane: __m256| {
@@ -100,10 +110,11 @@ unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys 
         let (p, q) = (_mm256_set1_ps(i[k].0), _mm256_set1_ps(i[k].1));
         [_mm256_mul_ps(a, p), _mm256_mul_ps(a, q), _mm256_mul_ps(b, p), _mm256_mul_ps(b, q)]
     };
-    // SAFETY: `first_plane` is the byte offset of one of the node's 6 rows of planes.
+    // SAFETY: the node begins with 6 rows of 8 planes.
     let slab = |k: usize| unsafe {
-        let enter = _mm256_load_ps(planes.add(packet.first_plane[k] as usize).cast());
-        let leave = _mm256_load_ps(planes.add(packet.first_plane[k] as usize ^ 32).cast());
+        let first = 16 * k + 8 * packet.is_negative[k] as usize;
+        let enter = _mm256_load_ps(planes.add(first));
+        let leave = _mm256_load_ps(planes.add(first ^ 8));
         let endless = _mm256_set1_ps(f32::INFINITY);
         let least = products(k, enter).into_iter().fold(endless, |m, p| _mm256_min_ps(p, m));
         let most = products(k, leave)
@@ -123,9 +134,9 @@ unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys 
 #[target_feature(enable = "avx2")]
 unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
     // SAFETY: the node is valid, and the index below 6 and 8.
-    let plane = |byte: u32| unsafe { _mm256_set1_ps((&(*node).planes)[byte as usize / 32][child & 7]) };
-    let enter = rays.first_plane.map(|byte| plane(byte));
-    let leave = rays.first_plane.map(|byte| plane(byte ^ 32));
+    let plane = |row: usize| unsafe { _mm256_set1_ps((&(*node).planes)[row][child & 7]) };
+    let enter = [0, 1, 2].map(|k| plane(2 * k + rays.is_negative[k] as usize));
+    let leave = [0, 1, 2].map(|k| plane(2 * k + 1 - rays.is_negative[k] as usize));
     let mut inside = 0;
     for eight in 0..PACKET / 8 {
         // SAFETY: rows of PACKET numbers, aligned to 32 bytes.
@@ -143,11 +154,10 @@ unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64
 
 #[inline]
 #[target_feature(enable = "avx2")]
-unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
-    let corners = block.cast::<u8>();
-    // SAFETY: `axis_row` is the byte offset of one of the first 3 rows of the block, and a corner has 3 rows of 32 bytes.
-    let row =
-        |corner: usize, k: usize| unsafe { _mm256_load_ps(corners.add(96 * corner + ray.axis_row[k] as usize).cast()) };
+unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32 {
+    let corners = block.cast::<f32>();
+    // SAFETY: the block begins with 3 rows of 8 numbers for each corner.
+    let row = |corner: usize, k: usize| unsafe { _mm256_load_ps(corners.add(24 * corner + 8 * ray.axes[k] as usize)) };
     let [ox, oy, oz] = ray.sheared_origin.map(|o| _mm256_set1_ps(o));
     let [sx, sy] = ray.shear.map(|s| _mm256_set1_ps(s));
     let sheared = |corner: usize| {
@@ -166,7 +176,19 @@ unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
     let zero = _mm256_setzero_ps();
     let negative = _mm256_cmp_ps::<_CMP_LT_OQ>(lowest, zero);
     let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(highest, zero);
-    !(_mm256_movemask_ps(_mm256_and_ps(negative, positive)) as u32) & 0xff
+    let passing = !(_mm256_movemask_ps(_mm256_and_ps(negative, positive)) as u32) & 0xff;
+    let rows = weights.as_mut_ptr().cast::<f32>();
+    for (edge, w) in w.into_iter().enumerate() {
+        // SAFETY: 3 rows of 8 numbers, aligned to 32 bytes.
+        unsafe { _mm256_store_ps(rows.add(8 * edge), w) };
+    }
+    passing
+}
+
+#[inline(never)]
+#[target_feature(enable = "avx2")]
+unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
+    triangle::crossing(corners, ray, weights)
 }
 
 #[inline]

@@ -2,7 +2,9 @@
 
 use super::node::{Block, Node, WIDTH};
 use super::packet::{Frustum, PACKET, PacketRays};
-use super::walker::RayLanes;
+use crate::prepared_ray::PreparedRay;
+use crate::triangle::{self, Corners};
+use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::pad_far;
 
 /// Eight 16-bit keys, the least of which comes next; [`NO_KEY`] for what is not to be visited.
@@ -24,6 +26,10 @@ pub(super) fn key(distance: f32) -> u16 {
     (d.to_bits() >> 16) as u16
 }
 
+/// The values of the edges' functions: `[edge][triangle]`. Only those of triangles that pass mean anything.
+#[repr(C, align(32))]
+pub(super) struct Weights(pub [[f32; WIDTH]; 3]);
+
 /// The arithmetic of a step.
 pub(super) trait Backend {
     /// The box test of all children ([`kirkas_geometry::Bounds3::intersect`]): keys of those that the ray enters before
@@ -31,7 +37,7 @@ pub(super) trait Backend {
     ///
     /// # Safety
     /// The CPU has what the backend needs; `node` is valid.
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys;
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys;
 
     /// The same for a whole packet: keys of the children that some of its rays may enter before `limit`.
     ///
@@ -45,11 +51,18 @@ pub(super) trait Backend {
     /// As for [`Backend::boxes`].
     unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64;
 
-    /// The edge test of all triangles: a bit for each of which the edges do not rule a hit out.
+    /// The edge test of all triangles ([`triangle::intersect`]): a bit for each of which the edges do not rule a hit out, and
+    /// what weighs their corners.
     ///
     /// # Safety
     /// The CPU has what the backend needs; `block` is valid.
-    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32;
+    unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32;
+
+    /// [`triangle::crossing`]
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs.
+    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)>;
 
     /// The least key, and the first place where it is.
     ///
@@ -69,17 +82,18 @@ pub(super) struct Portable;
 
 impl Backend for Portable {
     #[inline(always)]
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &RayLanes, limit: f32) -> Keys {
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
         // SAFETY: the caller promises that the node is valid.
         let node = unsafe { &*node };
-        let mut near = [ray.t_min; WIDTH];
+        let mut near = [ray.clipped.t_min; WIDTH];
+        let origin = ray.clipped.origin.to_array();
         let mut far = [f32::INFINITY; WIDTH];
         for k in 0..3 {
-            let first = ray.first_plane[k] as usize / 32;
+            let first = 2 * k + ray.is_negative[k] as usize;
             let (enter, leave) = (&node.planes[first], &node.planes[first ^ 1]);
             for c in 0..WIDTH {
-                let e = (enter[c] - ray.origin[k]) * ray.inverse[k];
-                let l = (leave[c] - ray.origin[k]) * ray.inverse[k];
+                let e = (enter[c] - origin[k]) * ray.inverse[k];
+                let l = (leave[c] - origin[k]) * ray.inverse[k];
                 near[c] = if e > near[c] { e } else { near[c] };
                 far[c] = if l < far[c] { l } else { far[c] };
             }
@@ -103,7 +117,7 @@ impl Backend for Portable {
         for c in 0..WIDTH {
             let (mut near, mut far) = (packet.t_min, f32::INFINITY);
             for k in 0..3 {
-                let first = packet.first_plane[k] as usize / 32;
+                let first = 2 * k + packet.is_negative[k] as usize;
                 let (e, _) = packet.distances(k, node.planes[first][c]);
                 let (_, l) = packet.distances(k, node.planes[first ^ 1][c]);
                 near = if e > near { e } else { near };
@@ -126,7 +140,7 @@ impl Backend for Portable {
         for r in 0..PACKET {
             let (mut near, mut far) = (rays.t_min[r], f32::INFINITY);
             for k in 0..3 {
-                let first = rays.first_plane[k] as usize / 32;
+                let first = 2 * k + rays.is_negative[k] as usize;
                 let e = (node.planes[first][child & 7] - rays.origin[k][r]) * rays.inverse[k][r];
                 let l = (node.planes[first ^ 1][child & 7] - rays.origin[k][r]) * rays.inverse[k][r];
                 near = if e > near { e } else { near };
@@ -140,22 +154,31 @@ impl Backend for Portable {
     }
 
     #[inline(always)]
-    unsafe fn edges(block: *const Block, ray: &RayLanes) -> u32 {
+    unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32 {
         // SAFETY: the caller promises that the block is valid.
         let block = unsafe { &*block };
+        let weights = weights.write(Weights([[0.0; WIDTH]; 3]));
         let mut passing = 0;
         for lane in 0..WIDTH {
             let sheared = |corner: usize| {
-                let [x, y, z] = ray.axis_row.map(|row| block.corners[3 * corner + row as usize / 32][lane]);
+                let [x, y, z] = ray.axes.map(|k| block.corners[3 * corner + k as usize][lane]);
                 let z = z - ray.sheared_origin[2];
                 (x - ray.sheared_origin[0] - ray.shear[0] * z, y - ray.sheared_origin[1] - ray.shear[1] * z)
             };
             let (a, b, c) = (sheared(0), sheared(1), sheared(2));
             let w = [c.0 * b.1 - c.1 * b.0, a.0 * c.1 - a.1 * c.0, b.0 * a.1 - b.1 * a.0];
             let (negative, positive) = (w.iter().any(|w| *w < 0.0), w.iter().any(|w| *w > 0.0));
+            for edge in 0..3 {
+                weights.0[edge][lane] = w[edge];
+            }
             passing |= u32::from(!(negative && positive)) << lane;
         }
         passing
+    }
+
+    #[inline(always)]
+    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
+        triangle::crossing(corners, ray, weights)
     }
 
     #[inline(always)]

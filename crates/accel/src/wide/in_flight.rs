@@ -69,6 +69,13 @@ unsafe fn fly_avx2<const ANY: bool>(
     unsafe { fly::<super::avx2::Avx2, ANY>(tree, batch, waiting, enter, counters, done) }
 }
 
+/// A ray under way.
+struct Slot<'a, const ANY: bool> {
+    walker: Walker,
+    ray: PreparedRay,
+    search: Search<'a, ANY>,
+}
+
 /// Slots whose rays are at a node, and at a leaf.
 struct Lists {
     slots: [[u8; IN_FLIGHT]; 2],
@@ -99,31 +106,37 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
     counters: &mut Counters,
     mut done: impl FnMut(usize, Option<Hit>),
 ) {
-    let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level };
-    let mut walkers: [MaybeUninit<Walker<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
+    let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
+    let mut slots: [MaybeUninit<Slot<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
     let mut lists = Lists { slots: [[0; IN_FLIGHT]; 2], len: [0; 2] };
     // Finished or not, a slot is free at first, and again when its ray is through.
     let mut free: [u8; IN_FLIGHT] = core::array::from_fn(|i| i as u8);
     let mut free_count = IN_FLIGHT;
     loop {
-        for &slot in &free[..free_count] {
-            let walker = &mut walkers[slot as usize];
+        for &number in &free[..free_count] {
+            let slot = &mut slots[number as usize];
             for index in waiting.by_ref() {
-                let search = Search::new(&batch.rays[index], index, batch.query);
-                let Some(prepared) = PreparedRay::new(&batch.rays[index]) else {
+                let mut search = Search::new(&batch.rays[index], index, batch.query);
+                let Some(ray) = PreparedRay::new(&batch.rays[index]) else {
                     *counters += search.counters;
                     done(index, None);
                     continue;
                 };
-                Walker::start(walker, &prepared, search, &ground, enter);
-                // SAFETY: started above.
-                let walker = unsafe { walker.assume_init_ref() };
-                if walker.place.is_end() {
-                    *counters += walker.search.counters;
-                    done(index, walker.search.best);
+                let s = slot.as_mut_ptr();
+                // SAFETY: the walker is started, the others are written, before any is read.
+                let place = unsafe {
+                    let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
+                    let place = Walker::start(walker, &ray, &mut search, &ground).place;
+                    (&raw mut (*s).ray).write(ray);
+                    (&raw mut (*s).search).write(search);
+                    place
+                };
+                if place.is_end() {
+                    *counters += search.counters;
+                    done(index, search.best);
                     continue;
                 }
-                lists.push(walker.place, slot);
+                lists.push(place, number);
                 break;
             }
         }
@@ -135,28 +148,28 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         let round = lists.slots[which];
         lists.len[which] = 0;
         free_count = 0;
-        for &slot in &round[..count] {
-            // SAFETY: slots in the lists were started, and a list holds rays at places of its type; the caller promises the
+        for &number in &round[..count] {
+            // SAFETY: slots in the lists were filled, and a list holds rays at places of its type; the caller promises the
             // CPU.
-            let walker = unsafe { walkers.get_unchecked_mut(slot as usize).assume_init_mut() };
+            let Slot { walker, ray, search } = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
             unsafe {
                 if which == AT_NODE {
-                    walker.step_node::<B>(&ground);
+                    walker.step_node::<B, ANY>(ray, search, &ground);
                 } else {
-                    walker.step_leaf::<B>(&ground, enter);
+                    walker.step_leaf::<B, ANY>(ray, search, &ground);
                 }
             }
             prefetch(&ground, walker.place);
             // Written in any case, kept if the ray is through.
             let is_end = walker.place.is_end();
-            free[free_count & (IN_FLIGHT - 1)] = slot;
+            free[free_count & (IN_FLIGHT - 1)] = number;
             free_count += usize::from(is_end);
-            lists.push(walker.place, slot);
+            lists.push(walker.place, number);
             lists.len[AT_LEAF] -= usize::from(is_end);
         }
-        for &slot in &free[..free_count] {
-            // SAFETY: started.
-            let search = unsafe { &walkers[slot as usize].assume_init_ref().search };
+        for &number in &free[..free_count] {
+            // SAFETY: filled.
+            let search = unsafe { &slots[number as usize].assume_init_ref().search };
             *counters += search.counters;
             done(search.ray_index, search.best);
         }
@@ -165,7 +178,7 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
 
 /// Start to load what the next step needs.
 #[inline(always)]
-fn prefetch(ground: &Ground, place: Place) {
+fn prefetch<const ANY: bool>(ground: &Ground<ANY>, place: Place) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: prefetching has no effect on memory, and the address is within the arena or its first line.
     unsafe {

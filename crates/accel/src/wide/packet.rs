@@ -8,7 +8,7 @@ use super::arena;
 use super::backend::{Backend, Portable};
 use super::in_flight::Batch;
 use super::node::{Node, Place};
-use super::walker::{Ground, Walker};
+use super::walker::{Ground, test_leaf};
 use crate::hit::{Counters, Hit};
 use crate::prepared_ray::PreparedRay;
 use crate::search::{Enter, Search};
@@ -24,8 +24,8 @@ pub(super) struct Frustum {
     /// Least and greatest, by axis.
     pub inverse: [(f32, f32); 3],
     pub t_min: f32,
-    /// Byte offsets in a node of the planes that the rays meet first.
-    pub first_plane: [u32; 3],
+    /// 1 where the directions are negative.
+    pub is_negative: [u32; 3],
 }
 
 impl Frustum {
@@ -48,7 +48,13 @@ pub(super) struct PacketRays {
     pub t_min: [f32; PACKET],
     /// Negative infinity for what is not a ray, or has been answered.
     pub limit: [f32; PACKET],
-    pub first_plane: [u32; 3],
+    pub is_negative: [u32; 3],
+}
+
+/// A ray of the packet.
+struct Member<'a> {
+    ray: PreparedRay,
+    search: Search<'a, false>,
 }
 
 /// A place that the packet has yet to look at.
@@ -131,37 +137,37 @@ unsafe fn pack<B: Backend>(
     counters: &mut Counters,
     done: &mut dyn FnMut(usize, Option<Hit>),
 ) -> bool {
-    let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level };
+    let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
     if !tree.root.is_node() {
         return false;
     }
-    let mut walkers: [MaybeUninit<Walker<false>>; PACKET] = [const { MaybeUninit::uninit() }; PACKET];
+    let mut members: [MaybeUninit<Member>; PACKET] = [const { MaybeUninit::uninit() }; PACKET];
     let mut soa = PacketRays {
         origin: [[0.0; PACKET]; 3],
         inverse: [[1.0; PACKET]; 3],
         t_min: [0.0; PACKET],
         limit: [f32::NEG_INFINITY; PACKET],
-        first_plane: [0; 3],
+        is_negative: [0; 3],
     };
     let mut frustum = Frustum {
         origin: [(f32::INFINITY, f32::NEG_INFINITY); 3],
         inverse: [(f32::INFINITY, f32::NEG_INFINITY); 3],
         t_min: f32::INFINITY,
-        first_plane: [0; 3],
+        is_negative: [0; 3],
     };
     for (r, ray) in rays.iter().enumerate() {
         let Some(prepared) = PreparedRay::new(ray) else { return false };
-        let first_plane = Walker::<false>::first_plane(&prepared);
+        let is_negative = prepared.is_negative;
         if r == 0 {
-            (soa.first_plane, frustum.first_plane) = (first_plane, first_plane);
-        } else if first_plane != soa.first_plane {
+            (soa.is_negative, frustum.is_negative) = (is_negative, is_negative);
+        } else if is_negative != soa.is_negative {
             return false;
         }
         // Then no product of the interval test is NaN.
-        if !prepared.inverse.is_finite() {
+        if !prepared.inverse().is_finite() {
             return false;
         }
-        let (o, i) = (prepared.clipped.origin.to_array(), prepared.inverse.to_array());
+        let (o, i) = (prepared.clipped.origin.to_array(), prepared.inverse);
         for k in 0..3 {
             (soa.origin[k][r], soa.inverse[k][r]) = (o[k], i[k]);
             frustum.origin[k] = (frustum.origin[k].0.min(o[k]), frustum.origin[k].1.max(o[k]));
@@ -170,14 +176,15 @@ unsafe fn pack<B: Backend>(
         soa.t_min[r] = prepared.clipped.t_min;
         soa.limit[r] = prepared.clipped.t_max;
         frustum.t_min = frustum.t_min.min(prepared.clipped.t_min);
-        let search = Search::new(ray, first + r, batch.query);
-        Walker::start(&mut walkers[r], &prepared, search, &ground, enter);
+        let mut search = Search::new(ray, first + r, batch.query);
+        for record in &tree.unbounded {
+            record.test(batch.level, &prepared, &mut search, enter);
+        }
+        soa.limit[r] = ground.limit(&prepared, &search);
+        members[r].write(Member { ray: prepared, search });
     }
-    // SAFETY: all were started.
-    let walkers = unsafe { &mut *(&raw mut walkers[..rays.len()] as *mut [Walker<false>]) };
-    for (r, w) in walkers.iter().enumerate() {
-        soa.limit[r] = w.limit();
-    }
+    // SAFETY: all were written.
+    let members = unsafe { &mut *(&raw mut members[..rays.len()] as *mut [Member]) };
 
     let mut waiting = [Waiting { place: Place::END, parent: Place::END, child: 0, key: 0 }; MOST_WAITING];
     let mut count = 0;
@@ -206,9 +213,9 @@ unsafe fn pack<B: Backend>(
         // Take up the nearest that some ray may enter.
         loop {
             if count == 0 {
-                for w in walkers.iter() {
-                    *counters += w.search.counters;
-                    done(w.search.ray_index, w.search.best);
+                for m in members.iter() {
+                    *counters += m.search.counters;
+                    done(m.search.ray_index, m.search.best);
                 }
                 return true;
             }
@@ -229,9 +236,9 @@ unsafe fn pack<B: Backend>(
             while inside != 0 {
                 let r = inside.trailing_zeros() as usize;
                 inside &= inside - 1;
-                let w = &mut walkers[r];
-                unsafe { w.test_leaf::<B>(&ground, next.place, enter) };
-                soa.limit[r] = w.limit();
+                let Member { ray, search } = &mut members[r];
+                unsafe { test_leaf::<B, false>(next.place, ray, search, &ground) };
+                soa.limit[r] = ground.limit(ray, search);
             }
             limit = soa.limit.iter().fold(f32::NEG_INFINITY, |m, l| if *l > m { *l } else { m });
         }

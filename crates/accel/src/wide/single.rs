@@ -17,46 +17,38 @@ impl Tree {
         search: &mut Search<ANY>,
         enter: Enter<ANY>,
     ) {
-        let ground = Ground { tree: self, lines: self.lines.as_ptr(), level };
+        let ground = Ground { tree: self, lines: self.lines.as_ptr(), level, enter };
         #[cfg(target_arch = "x86_64")]
         if self.has_avx2 {
             // SAFETY: `has_avx2` is only set where it was detected.
-            return unsafe { walk_avx2(&ground, ray, search, enter) };
+            return unsafe { walk_avx2(&ground, ray, search) };
         }
         // SAFETY: portable code needs nothing.
-        unsafe { walk::<Portable, ANY>(&ground, ray, search, enter) }
+        unsafe { walk::<Portable, ANY>(&ground, ray, search) }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn walk_avx2<const ANY: bool>(ground: &Ground, ray: &PreparedRay, search: &mut Search<ANY>, enter: Enter<ANY>) {
+unsafe fn walk_avx2<const ANY: bool>(ground: &Ground<ANY>, ray: &PreparedRay, search: &mut Search<ANY>) {
     // SAFETY: AVX2 is enabled here.
-    unsafe { walk::<super::avx2::Avx2, ANY>(ground, ray, search, enter) }
+    unsafe { walk::<super::avx2::Avx2, ANY>(ground, ray, search) }
 }
 
 /// # Safety
 /// The CPU has what `B` needs.
 #[inline(always)]
-unsafe fn walk<B: Backend, const ANY: bool>(
-    ground: &Ground,
-    ray: &PreparedRay,
-    search: &mut Search<ANY>,
-    enter: Enter<ANY>,
-) {
+unsafe fn walk<B: Backend, const ANY: bool>(ground: &Ground<ANY>, ray: &PreparedRay, search: &mut Search<ANY>) {
     let mut slot = MaybeUninit::uninit();
-    Walker::start(&mut slot, ray, *search, ground, enter);
-    // SAFETY: started above.
-    let walker = unsafe { slot.assume_init_mut() };
+    let walker = Walker::start(&mut slot, ray, search, ground);
     while !walker.place.is_end() {
         // SAFETY: the caller promises the CPU; places are tested before they are stepped on.
         unsafe {
             if walker.place.is_node() {
-                walker.step_node::<B>(ground);
+                walker.step_node::<B, ANY>(ray, search, ground);
             } else {
-                walker.step_leaf::<B>(ground, enter);
+                walker.step_leaf::<B, ANY>(ray, search, ground);
             }
         }
     }
-    *search = walker.search;
 }
