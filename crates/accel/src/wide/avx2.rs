@@ -1,6 +1,8 @@
-//! The arithmetic of a step in AVX2: operation for operation that of [`Portable`](super::backend::Portable).
+//! The arithmetic of a step in AVX2: the edge test operation for operation that of [`Portable`](super::backend::Portable), the box
+//! tests with fused operations, within the slack that they have.
 
 use super::backend::{Backend, Keys, Weights};
+use super::box_ray::BoxRay;
 use super::node::{Block, Node};
 use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
@@ -9,68 +11,73 @@ use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::FAR_PAD;
 
-/// Code for CPUs with AVX2.
+/// Code for CPUs with AVX2 and FMA.
 pub(super) struct Avx2;
 
 impl Backend for Avx2 {
     #[inline(always)]
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
-        // SAFETY: the caller promises AVX2 and a valid node.
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys {
+        // SAFETY: the caller promises AVX2 and FMA and a valid node.
         unsafe { boxes::<ANY>(node, ray, limit) }
     }
 
     #[inline(always)]
     unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
-        // SAFETY: the caller promises AVX2 and a valid node.
+        // SAFETY: the caller promises AVX2 and FMA and a valid node.
         unsafe { packet_boxes(node, packet, limit) }
     }
 
     #[inline(always)]
     unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
-        // SAFETY: the caller promises AVX2 and a valid node.
+        // SAFETY: the caller promises AVX2 and FMA and a valid node.
         unsafe { rays_in_box(node, child, rays) }
     }
 
     #[inline(always)]
     unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32 {
-        // SAFETY: the caller promises AVX2 and a valid block.
+        // SAFETY: the caller promises AVX2 and FMA and a valid block.
         unsafe { edges(block, ray, weights) }
     }
 
     #[inline(always)]
     unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
-        // SAFETY: the caller promises AVX2.
+        // SAFETY: the caller promises AVX2 and FMA.
         unsafe { crossing(corners, ray, weights) }
     }
 
     #[inline(always)]
     unsafe fn least(keys: &Keys) -> (u16, usize) {
-        // SAFETY: the caller promises AVX2.
+        // SAFETY: the caller promises AVX2 and FMA.
         unsafe { least(keys) }
     }
 
     #[inline(always)]
     unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
-        // SAFETY: the caller promises AVX2.
+        // SAFETY: the caller promises AVX2 and FMA.
         unsafe { without(keys, place) }
     }
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
-unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
+#[target_feature(enable = "avx2,fma")]
+unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys {
     let planes = node.cast::<f32>();
-    let origin = ray.clipped.origin.to_array();
     // SAFETY: the node begins with 6 rows of 8 planes.
     let slab = |k: usize| unsafe {
-        let (o, i) = (_mm256_set1_ps(origin[k]), _mm256_set1_ps(ray.inverse[k]));
+        let inverse = _mm256_set1_ps(ray.inverse[k]);
         let first = 16 * k + 8 * ray.is_negative[k] as usize;
         let enter = _mm256_load_ps(planes.add(first));
         let leave = _mm256_load_ps(planes.add(first ^ 8));
-        (_mm256_mul_ps(_mm256_sub_ps(enter, o), i), _mm256_mul_ps(_mm256_sub_ps(leave, o), i))
+        (
+            _mm256_fmadd_ps(enter, inverse, _mm256_set1_ps(ray.enter[k])),
+            _mm256_fmadd_ps(leave, inverse, _mm256_set1_ps(ray.leave[k])),
+        )
     };
-    let slabs = [slab(0), slab(1), slab(2)];
-    let (near, far) = interval(slabs, _mm256_set1_ps(ray.clipped.t_min), _mm256_set1_ps(limit));
+    let (x, y, z) = (slab(0), slab(1), slab(2));
+    // NaN is always the first operand, and so says nothing.
+    let (t_min, limit) = (_mm256_set1_ps(ray.t_min), _mm256_set1_ps(limit));
+    let near = _mm256_max_ps(_mm256_max_ps(x.0, t_min), _mm256_max_ps(y.0, _mm256_max_ps(z.0, t_min)));
+    let far = _mm256_min_ps(_mm256_min_ps(x.1, limit), _mm256_min_ps(y.1, _mm256_min_ps(z.1, limit)));
     let missed = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far));
     let missed = _mm256_srli_epi32::<16>(missed);
     let keys = if ANY {
@@ -89,7 +96,7 @@ unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f3
 
 /// When rays are within all three slabs. NaN, a ray within a face, is always the first operand, and so loses.
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn interval([x, y, z]: [(__m256, __m256); 3], t_min: __m256, limit: __m256) -> (__m256, __m256) {
     let endless = _mm256_set1_ps(f32::INFINITY);
     let near = _mm256_max_ps(_mm256_max_ps(x.0, t_min), _mm256_max_ps(y.0, _mm256_max_ps(z.0, t_min)));
@@ -100,7 +107,7 @@ fn interval([x, y, z]: [(__m256, __m256); 3], t_min: __m256, limit: __m256) -> (
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
     let planes = node.cast::<f32>();
     let [o, i] = [&packet.origin, &packet.inverse];
@@ -131,7 +138,7 @@ unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys 
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
     // SAFETY: the node is valid, and the index below 6 and 8.
     let plane = |row: usize| unsafe { _mm256_set1_ps((&(*node).planes)[row][child & 7]) };
@@ -153,7 +160,7 @@ unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32 {
     let corners = block.cast::<f32>();
     // SAFETY: the block begins with 3 rows of 8 numbers for each corner.
@@ -185,21 +192,21 @@ unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUnini
     passing
 }
 
-#[inline(never)]
-#[target_feature(enable = "avx2")]
+#[inline]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
     triangle::crossing(corners, ray, weights)
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn least(keys: &Keys) -> (u16, usize) {
     let found = _mm_cvtsi128_si32(_mm_minpos_epu16(to_register(keys))) as u32;
     (found as u16, (found >> 16) as usize)
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
     static ONE: [Keys; 8] = {
         let mut rows = [Keys([0; 8]); 8];
@@ -215,14 +222,14 @@ unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn to_register(keys: &Keys) -> __m128i {
     // SAFETY: keys are 16 bytes, aligned to 16.
     unsafe { _mm_load_si128(keys.0.as_ptr().cast()) }
 }
 
 #[inline]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn from_register(register: __m128i) -> Keys {
     let mut keys = Keys::NONE;
     // SAFETY: keys are 16 bytes, aligned to 16.

@@ -1,5 +1,6 @@
 //! The arithmetic of a step, once for any CPU. A twin for AVX2 is in `avx2`; both give the same bits.
 
+use super::box_ray::BoxRay;
 use super::node::{Block, Node, WIDTH};
 use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
@@ -32,12 +33,12 @@ pub(super) struct Weights(pub [[f32; WIDTH]; 3]);
 
 /// The arithmetic of a step.
 pub(super) trait Backend {
-    /// The box test of all children ([`kirkas_geometry::Bounds3::intersect`]): keys of those that the ray enters before
-    /// `limit`, by entry distance or (`ANY`) by the node's order.
+    /// The box test of all children: keys of those that the ray may enter before `limit`, by entry distance or (`ANY`) by the
+    /// node's order.
     ///
     /// # Safety
     /// The CPU has what the backend needs; `node` is valid.
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys;
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys;
 
     /// The same for a whole packet: keys of the children that some of its rays may enter before `limit`.
     ///
@@ -82,26 +83,24 @@ pub(super) struct Portable;
 
 impl Backend for Portable {
     #[inline(always)]
-    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &PreparedRay, limit: f32) -> Keys {
+    unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys {
         // SAFETY: the caller promises that the node is valid.
         let node = unsafe { &*node };
-        let mut near = [ray.clipped.t_min; WIDTH];
-        let origin = ray.clipped.origin.to_array();
+        let mut near = [ray.t_min; WIDTH];
         let mut far = [f32::INFINITY; WIDTH];
         for k in 0..3 {
             let first = 2 * k + ray.is_negative[k] as usize;
             let (enter, leave) = (&node.planes[first], &node.planes[first ^ 1]);
             for c in 0..WIDTH {
-                let e = (enter[c] - origin[k]) * ray.inverse[k];
-                let l = (leave[c] - origin[k]) * ray.inverse[k];
+                let e = enter[c] * ray.inverse[k] + ray.enter[k];
+                let l = leave[c] * ray.inverse[k] + ray.leave[k];
                 near[c] = if e > near[c] { e } else { near[c] };
                 far[c] = if l < far[c] { l } else { far[c] };
             }
         }
         let mut keys = Keys::NONE;
         for c in 0..WIDTH {
-            let far = pad_far(far[c]);
-            let far = if limit < far { limit } else { far };
+            let far = if limit < far[c] { limit } else { far[c] };
             if near[c] <= far {
                 keys.0[c] = if ANY { node.order[c] } else { key(near[c]) };
             }

@@ -56,7 +56,7 @@ impl Tree {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn fly_avx2<const ANY: bool>(
     tree: &Tree,
     batch: &Batch,
@@ -65,7 +65,7 @@ unsafe fn fly_avx2<const ANY: bool>(
     counters: &mut Counters,
     done: impl FnMut(usize, Option<Hit>),
 ) {
-    // SAFETY: AVX2 is enabled here.
+    // SAFETY: AVX2 and FMA are enabled here.
     unsafe { fly::<super::avx2::Avx2, ANY>(tree, batch, waiting, enter, counters, done) }
 }
 
@@ -86,12 +86,15 @@ const AT_NODE: usize = 0;
 const AT_LEAF: usize = 1;
 
 impl Lists {
+    /// Put a slot where its ray's place says, or among the free ones: 1 if so. Without a branch on the place.
     #[inline(always)]
-    fn push(&mut self, place: Place, slot: u8) {
-        let list = usize::from(!place.is_node());
+    fn sort(&mut self, place: Place, slot: u8, free: &mut [u8; IN_FLIGHT], free_count: usize) -> usize {
+        let (is_end, list) = (usize::from(place.is_end()), usize::from(!place.is_node()));
         let len = self.len[list];
         self.slots[list][len & (IN_FLIGHT - 1)] = slot;
-        self.len[list] = len + 1;
+        self.len[list] = len + 1 - is_end;
+        free[free_count & (IN_FLIGHT - 1)] = slot;
+        is_end
     }
 }
 
@@ -116,27 +119,26 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         for &number in &free[..free_count] {
             let slot = &mut slots[number as usize];
             for index in waiting.by_ref() {
-                let mut search = Search::new(&batch.rays[index], index, batch.query);
                 let Some(ray) = PreparedRay::new(&batch.rays[index]) else {
-                    *counters += search.counters;
+                    counters.rays += 1;
                     done(index, None);
                     continue;
                 };
-                let s = slot.as_mut_ptr();
-                // SAFETY: the walker is started, the others are written, before any is read.
-                let place = unsafe {
-                    let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
-                    let place = Walker::start(walker, &ray, &mut search, &ground).place;
+                // SAFETY: all three parts of the slot are written before any is read.
+                let slot = unsafe {
+                    let s = slot.as_mut_ptr();
+                    (&raw mut (*s).search).write(Search::new(&batch.rays[index], index, batch.query));
                     (&raw mut (*s).ray).write(ray);
-                    (&raw mut (*s).search).write(search);
-                    place
+                    let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
+                    Walker::start(walker, &(*s).ray, &mut (*s).search, &ground);
+                    &mut *s
                 };
-                if place.is_end() {
-                    *counters += search.counters;
-                    done(index, search.best);
+                if slot.walker.place.is_end() {
+                    *counters += slot.search.counters;
+                    done(index, slot.search.best);
                     continue;
                 }
-                lists.push(place, number);
+                lists.sort(slot.walker.place, number, &mut [0; IN_FLIGHT], 0);
                 break;
             }
         }
@@ -148,24 +150,22 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         let round = lists.slots[which];
         lists.len[which] = 0;
         free_count = 0;
-        for &number in &round[..count] {
-            // SAFETY: slots in the lists were filled, and a list holds rays at places of its type; the caller promises the
-            // CPU.
-            let Slot { walker, ray, search } = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
-            unsafe {
-                if which == AT_NODE {
-                    walker.step_node::<B, ANY>(ray, search, &ground);
-                } else {
-                    walker.step_leaf::<B, ANY>(ray, search, &ground);
-                }
+        // SAFETY (both loops): slots in the lists were filled, and a list holds rays at places of its type; the caller
+        // promises the CPU.
+        if which == AT_NODE {
+            for &number in &round[..count] {
+                let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
+                unsafe { slot.walker.step_node::<B, ANY>(&mut slot.search, &ground) };
+                prefetch(&ground, slot.walker.place);
+                free_count += lists.sort(slot.walker.place, number, &mut free, free_count);
             }
-            prefetch(&ground, walker.place);
-            // Written in any case, kept if the ray is through.
-            let is_end = walker.place.is_end();
-            free[free_count & (IN_FLIGHT - 1)] = number;
-            free_count += usize::from(is_end);
-            lists.push(walker.place, number);
-            lists.len[AT_LEAF] -= usize::from(is_end);
+        } else {
+            for &number in &round[..count] {
+                let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
+                unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
+                prefetch(&ground, slot.walker.place);
+                free_count += lists.sort(slot.walker.place, number, &mut free, free_count);
+            }
         }
         for &number in &free[..free_count] {
             // SAFETY: filled.

@@ -7,6 +7,7 @@ mod arena;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod backend;
+mod box_ray;
 mod closest;
 mod emit;
 mod in_flight;
@@ -42,6 +43,8 @@ pub(crate) struct Tree {
     /// What no box holds; tested by every ray.
     unbounded: Vec<Record>,
     bounds: Bounds3,
+    /// No coordinate of a box is larger.
+    reach: f32,
     /// True when a primitive may be in several leaves, in parts.
     is_split: bool,
     has_avx2: bool,
@@ -54,8 +57,9 @@ impl Tree {
         let binary = binned_sah::build(references, &costs(geometries, instances), executor);
         let numbers = Numbers::new(geometries);
         let bounds = binary.references.iter().map(|r| r.bounds()).fold(Bounds3::EMPTY, Bounds3::union);
+        let reach = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
         let (lines, root) = emit::emit(&binary, geometries, &numbers, executor);
-        Tree { lines, root, numbers, unbounded, bounds, is_split: false, has_avx2: has_avx2() }
+        Tree { lines, root, numbers, unbounded, bounds, reach, is_split: false, has_avx2: has_avx2() }
     }
 
     /// Answer with the code for any processor, as if this one had no AVX2.
@@ -84,7 +88,7 @@ fn costs(geometries: &[Geometry], instances: &[PlacedInstance]) -> Costs {
 
 fn has_avx2() -> bool {
     #[cfg(target_arch = "x86_64")]
-    return std::arch::is_x86_feature_detected!("avx2");
+    return std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
     #[cfg(not(target_arch = "x86_64"))]
     return false;
 }

@@ -143,7 +143,12 @@ impl Block {
     #[inline(always)]
     pub fn triangle(&self, lane: usize) -> [[f32; 3]; 3] {
         let lane = lane & (WIDTH - 1);
-        [0, 1, 2].map(|c| [0, 1, 2].map(|k| self.corners[3 * c + k][lane]))
+        let c = &self.corners;
+        [
+            [c[0][lane], c[1][lane], c[2][lane]],
+            [c[3][lane], c[4][lane], c[5][lane]],
+            [c[6][lane], c[7][lane], c[8][lane]],
+        ]
     }
 }
 

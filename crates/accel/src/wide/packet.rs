@@ -109,7 +109,7 @@ impl Tree {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn pack_avx2(
     tree: &Tree,
     batch: &Batch,
@@ -119,7 +119,7 @@ unsafe fn pack_avx2(
     counters: &mut Counters,
     done: &mut dyn FnMut(usize, Option<Hit>),
 ) -> bool {
-    // SAFETY: AVX2 is enabled here.
+    // SAFETY: AVX2 and FMA are enabled here.
     unsafe { pack::<super::avx2::Avx2>(tree, batch, rays, first, enter, counters, done) }
 }
 

@@ -29,9 +29,9 @@ impl Tree {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 unsafe fn walk_avx2<const ANY: bool>(ground: &Ground<ANY>, ray: &PreparedRay, search: &mut Search<ANY>) {
-    // SAFETY: AVX2 is enabled here.
+    // SAFETY: AVX2 and FMA are enabled here.
     unsafe { walk::<super::avx2::Avx2, ANY>(ground, ray, search) }
 }
 
@@ -45,7 +45,7 @@ unsafe fn walk<B: Backend, const ANY: bool>(ground: &Ground<ANY>, ray: &Prepared
         // SAFETY: the caller promises the CPU; places are tested before they are stepped on.
         unsafe {
             if walker.place.is_node() {
-                walker.step_node::<B, ANY>(ray, search, ground);
+                walker.step_node::<B, ANY>(search, ground);
             } else {
                 walker.step_leaf::<B, ANY>(ray, search, ground);
             }

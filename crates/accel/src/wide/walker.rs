@@ -3,6 +3,7 @@
 
 use super::arena::{self, Line};
 use super::backend::{Backend, Keys, NO_KEY, Weights, key};
+use super::box_ray::BoxRay;
 use super::node::{Block, List, Node, Place};
 use super::{MAX_LEVELS, Tree};
 use crate::prepared_ray::PreparedRay;
@@ -29,6 +30,7 @@ struct Stack {
 
 /// Where a ray is.
 pub(super) struct Walker {
+    lanes: BoxRay,
     /// Boxes that are entered after this are culled.
     limit: f32,
     limit_key: u16,
@@ -68,6 +70,7 @@ impl Walker {
         guard.0[0] = 0;
         // SAFETY: every field is written but the unused entries of the stack, which may stay uninitialised.
         let w = unsafe {
+            (&raw mut (*w).lanes).write(BoxRay::new(ray, ground.tree.reach));
             (&raw mut (*w).place).write(ground.tree.root);
             (&raw mut (*w).limit).write(0.0);
             (&raw mut (*w).limit_key).write(0);
@@ -99,22 +102,21 @@ impl Walker {
     /// # Safety
     /// The CPU has what `B` needs; `place` is a node of the ground's tree.
     #[inline(always)]
-    pub unsafe fn step_node<B: Backend, const ANY: bool>(
-        &mut self,
-        ray: &PreparedRay,
-        search: &mut Search<ANY>,
-        ground: &Ground<ANY>,
-    ) {
+    pub unsafe fn step_node<B: Backend, const ANY: bool>(&mut self, search: &mut Search<ANY>, ground: &Ground<ANY>) {
         search.counters.nodes_visited += 1;
         // SAFETY: the tree's places lead to what they say; the stack has room for a node on each level.
         unsafe {
             let node: *const Node = arena::get(ground.lines, self.place.line());
-            let keys = B::boxes::<ANY>(node, ray, self.limit);
-            let (least, _) = B::least(&keys);
+            let keys = B::boxes::<ANY>(node, &self.lanes, self.limit);
+            let (least, child) = B::least(&keys);
+            if least == NO_KEY {
+                return self.next::<B>(ground.lines);
+            }
             // Written in any case, kept if there is something in it.
+            let (keys, is_empty) = B::without(&keys, child);
             *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(Entry { keys, node: self.place });
-            self.stack.len += usize::from(least != NO_KEY);
-            self.next::<B>(ground.lines);
+            self.stack.len += usize::from(!is_empty);
+            self.place = *(*node).children.get_unchecked(child);
         }
     }
 
@@ -197,7 +199,8 @@ pub unsafe fn test_leaf<B: Backend, const ANY: bool>(
             let lane = passing.trailing_zeros() as usize & 7;
             passing &= passing - 1;
             let corners = (*block).triangle(lane);
-            let weights = [0, 1, 2].map(|edge| (*weights.as_ptr()).0[edge][lane]);
+            let rows = &(*weights.as_ptr()).0;
+            let weights = [rows[0][lane], rows[1][lane], rows[2][lane]];
             if let Some(crossing) = B::crossing(&corners, ray, weights) {
                 let (geometry, index) = ground.tree.numbers.ids((&(*block).numbers)[lane]);
                 search.offer(ground.level, geometry, index, crossing);
