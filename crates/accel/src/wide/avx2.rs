@@ -87,10 +87,11 @@ unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) ->
         _mm256_or_si256(_mm256_srli_epi32::<16>(near), missed)
     };
     let mut keys = _mm_packus_epi32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys));
-    if ANY {
-        // SAFETY: the node is valid; `order` is aligned like it, at a multiple of 16 bytes.
-        keys = _mm_or_si128(keys, unsafe { _mm_load_si128((&raw const (*node).order).cast()) });
-    }
+    // SAFETY: the node is valid, and both rows are aligned like it, at a multiple of 16 bytes.
+    let row = unsafe {
+        _mm_load_si128(if ANY { (&raw const (*node).order).cast() } else { (&raw const (*node).empty).cast() })
+    };
+    keys = _mm_or_si128(keys, row);
     from_register(keys)
 }
 

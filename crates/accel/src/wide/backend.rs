@@ -102,7 +102,7 @@ impl Backend for Portable {
         for c in 0..WIDTH {
             let far = if limit < far[c] { limit } else { far[c] };
             if near[c] <= far {
-                keys.0[c] = if ANY { node.order[c] } else { key(near[c]) };
+                keys.0[c] = if ANY { node.order[c] } else { key(near[c]) | node.empty[c] };
             }
         }
         keys

@@ -15,13 +15,14 @@ pub(super) const LIST_LINES: usize = size_of::<List>() / 64;
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    /// `[2 * axis + (0 = low, 1 = high)][child]`. An empty slot has an empty box, which no ray enters.
+    /// `[2 * axis + (0 = low, 1 = high)][child]`. An empty slot has an empty box.
     pub planes: [[f32; WIDTH]; 6],
     /// Where the children are.
     pub children: [Place; WIDTH],
-    /// The order in which a search for any hit looks at the children, most promising first.
+    /// The order in which a search for any hit looks at the children, most promising first; all ones for an empty slot.
     pub order: [u16; WIDTH],
-    unused: [u32; 4],
+    /// All ones for an empty slot, else 0.
+    pub empty: [u16; WIDTH],
 }
 
 /// Up to 8 triangles, as a structure of arrays.
@@ -117,12 +118,13 @@ impl Node {
             [f32::NEG_INFINITY; WIDTH],
         ],
         children: [Place::END; WIDTH],
-        order: [0; WIDTH],
-        unused: [0; 4],
+        order: [u16::MAX; WIDTH],
+        empty: [u16::MAX; WIDTH],
     };
 
     /// Put a box into a slot.
     pub fn set_bounds(&mut self, slot: usize, b: &Bounds3) {
+        self.empty[slot] = 0;
         for k in 0..3 {
             self.planes[2 * k][slot] = b.min[k];
             self.planes[2 * k + 1][slot] = b.max[k];
