@@ -53,10 +53,10 @@ impl CellRay {
         }
         let grow = Vec3::splat(thickness);
         let grown = Bounds3 { min: root.min - grow, max: root.max + grow };
-        let (near, far) = grown.intersect(&line, ray.inverse)?;
-        let shift = grow.copysign(ray.inverse);
+        let (near, far) = grown.intersect(&line, ray.inverse())?;
+        let shift = grow.copysign(ray.inverse());
         let (leave_origin, enter_origin) = (line.origin - shift, line.origin + shift);
-        Some(CellRay { leave_origin, enter_origin, inverse: ray.inverse, near, far, culls })
+        Some(CellRay { leave_origin, enter_origin, inverse: ray.inverse(), near, far, culls })
     }
 
     /// True when the ray runs down this axis.

@@ -53,7 +53,7 @@ impl Cells {
         search: &mut Search<ANY>,
         test: &mut impl FnMut(&mut Search<ANY>, [usize; 3]),
     ) {
-        let Some((near, far)) = self.bounds.intersect(&ray.clipped, ray.inverse) else { return };
+        let Some((near, far)) = self.bounds.intersect(&ray.clipped, ray.inverse()) else { return };
         let backward = [0, 1, 2].map(|k: usize| ray.inverse[k].is_sign_negative());
         // NaN, a ray within the plane: it is never crossed.
         let distance = |k: usize, plane: f32| (plane - ray.clipped.origin[k]) * ray.inverse[k];
@@ -96,7 +96,7 @@ impl Cells {
         test: &mut impl FnMut(&mut Search<ANY>, [usize; 3]),
     ) {
         let (origin, direction) = (ray.clipped.origin.as_dvec3(), ray.clipped.direction.as_dvec3());
-        let (thickness, [_, _, main]) = (f64::from(thickness), ray.axes);
+        let (thickness, [_, _, main]) = (f64::from(thickness), ray.axes.map(|k| k as usize));
         for slice in self.planes.along(main).windows(2).enumerate() {
             let (i, [low, high]) = (slice.0, [slice.1[0], slice.1[1]].map(f64::from));
             let t = [low - thickness, high + thickness].map(|p| (p - origin[main]) / direction[main]);
