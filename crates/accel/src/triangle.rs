@@ -45,13 +45,24 @@ fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// The lowest and the highest corner of [`bounds`].
+/// How far the edge test may move a point of the triangle sideways, along each axis.
+pub(crate) fn growth(corners: &Corners) -> f32 {
+    span(&corners.map(to_lanes)).2
+}
+
+/// The lowest and the highest of each coordinate, and the growth.
 #[inline(always)]
-fn grown(c: &[Lanes<f32>; 3]) -> (Lanes<f32>, Lanes<f32>) {
+fn span(c: &[Lanes<f32>; 3]) -> (Lanes<f32>, Lanes<f32>, f32) {
     let low = each(each(c[0], c[1], least), c[2], least);
     let high = each(each(c[0], c[1], most), c[2], most);
     let size = each(high, low, |h, l| h - l);
-    let grow = most(most(size[0], size[1]), size[2]) * (8.0 * UNIT_ROUNDOFF);
+    (low, high, most(most(size[0], size[1]), size[2]) * (8.0 * UNIT_ROUNDOFF))
+}
+
+/// The lowest and the highest corner of [`bounds`].
+#[inline(always)]
+fn grown(c: &[Lanes<f32>; 3]) -> (Lanes<f32>, Lanes<f32>) {
+    let (low, high, grow) = span(c);
     // At least one step of the coordinate itself, lest the growth be rounded away.
     let more = |x: f32| grow + x.abs() * (2.0 * UNIT_ROUNDOFF);
     (low.map(|x| x - more(x)), high.map(|x| x + more(x)))

@@ -17,7 +17,7 @@ const FORK_ABOVE: usize = 1 << 15;
 /// The tree over `references`. Nodes stand depth first, the left child after its parent.
 pub(crate) fn build(mut references: Vec<Reference>, costs: &Costs, executor: &dyn Executor) -> BinaryTree {
     let builder = Builder { costs, executor };
-    let (nodes, root) = builder.nodes(&mut references);
+    let (nodes, root) = builder.nodes(&mut references, 0);
     BinaryTree { nodes, root, references }
 }
 
@@ -64,19 +64,19 @@ struct Split {
     boxes: [Box4; 2],
 }
 
-struct Builder<'a> {
-    costs: &'a Costs,
-    executor: &'a dyn Executor,
+pub(super) struct Builder<'a> {
+    pub costs: &'a Costs,
+    pub executor: &'a dyn Executor,
 }
 
 impl Builder<'_> {
-    /// The nodes over `references`, which are put into the order of the leaves, and the root.
-    fn nodes(&self, references: &mut [Reference]) -> (Vec<Node>, Option<Child>) {
+    /// The nodes over `references`, which are put into the order of the leaves, and the root, which lies at this depth.
+    pub fn nodes(&self, references: &mut [Reference], depth: usize) -> (Vec<Node>, Option<Child>) {
         if references.is_empty() {
             return (Vec::new(), None);
         }
         let around = self.around(references);
-        let piece = self.fork(references, 0, around, 0);
+        let piece = self.fork(references, 0, around, depth);
         let mut nodes = Vec::with_capacity(piece.len());
         let root = match piece {
             Piece::Whole(own, root) => {
@@ -111,7 +111,7 @@ impl Builder<'_> {
     }
 
     /// Both results, perhaps computed at once.
-    fn both<T: Send>(&self, mut a: impl FnMut() -> T + Send, mut b: impl FnMut() -> T + Send) -> [T; 2] {
+    pub fn both<T: Send>(&self, mut a: impl FnMut() -> T + Send, mut b: impl FnMut() -> T + Send) -> [T; 2] {
         let (mut of_a, mut of_b) = (None, None);
         self.executor.join(&mut || of_a = Some(a()), &mut || of_b = Some(b()));
         [of_a, of_b].map(|of| of.expect("executors run both jobs"))
@@ -147,7 +147,7 @@ impl Builder<'_> {
         Piece::Forked { boxes: arounds.map(|a| a.whole), halves: Box::new(halves) }
     }
 
-    fn subtree(
+    pub fn subtree(
         &self,
         references: &mut [Reference],
         first: usize,
@@ -202,7 +202,7 @@ impl Builder<'_> {
 }
 
 /// Near the depth that traversal has room for, references are halved: each level then takes one from the logarithm.
-fn has_room(count: usize, depth: usize) -> bool {
+pub(super) fn has_room(count: usize, depth: usize) -> bool {
     let levels_needed = usize::BITS - (count - 1).leading_zeros();
     depth + (levels_needed as usize) < MAX_DEPTH
 }

@@ -28,7 +28,7 @@ pub(crate) struct Plane {
 }
 
 /// Adding it to a small positive f32 leaves the nearest integer in the low bits.
-const INTEGER_IN_LOW_BITS: f32 = 8_388_608.0;
+pub(super) const INTEGER_IN_LOW_BITS: f32 = 8_388_608.0;
 
 impl Binning {
     /// Over the box of the centers; `bins` is a power of two up to [`MAX_BINS`].
@@ -94,39 +94,55 @@ impl Bins {
 
     /// The plane of the least cost; `None` when the centers do not differ, or areas overflow.
     pub fn best_plane(&self, binning: &Binning, costs: &Costs) -> Option<Plane> {
-        // All axes at once: what the right sides cost, then the sums.
         let bins = binning.bins;
-        let mut right_cost = [Lanes::splat(0.0); MAX_BINS];
-        let mut side = Side { boxes: [Box4::EMPTY; 3], counts: [0; 4] };
-        for i in (1..bins).rev() {
-            side = side.and(self, i);
-            right_cost[i - 1] = side.cost(costs);
-        }
-        let mut side = Side { boxes: [Box4::EMPTY; 3], counts: [0; 4] };
-        let (mut least, mut last_left) = (Lanes::splat(f32::INFINITY), Lanes::splat(0.0));
-        for (i, right) in right_cost.iter().enumerate().take(bins - 1) {
-            side = side.and(self, i);
-            let sum = side.cost(costs).plus(*right);
-            let better = sum.less(least);
-            least = sum.where_or(better, least);
-            last_left = Lanes::splat(i as f32).where_or(better, last_left);
-        }
-        let mut best = (f32::INFINITY, 0);
-        for axis in 0..3 {
-            if binning.scale.0[axis] > 0.0 && least.0[axis] < best.0 {
-                best = (least.0[axis], axis);
-            }
-        }
-        let (cost, axis) = best;
-        if cost == f32::INFINITY {
-            return None;
-        }
-        let last_left = last_left.0[axis] as usize;
-        let (left, right) = self.boxes[..bins].split_at(last_left + 1);
-        let boxes = [left, right].map(|side| side.iter().fold(Box4::EMPTY, |all, b| all.union(b[axis])));
-        let left_count = self.counts[..=last_left].iter().map(|c| c[axis]).sum::<u32>() as usize;
+        let counts = &self.counts[..bins];
+        let (cost, axis, last_left) = sweep(&self.boxes[..bins], counts, counts, binning.scale, costs)?;
+        let left_count = counts[..=last_left].iter().map(|c| c[axis]).sum::<u32>() as usize;
+        let boxes = sides(&self.boxes[..bins], axis, last_left);
         Some(Plane { axis, last_left: last_left as u32, cost, left_count, boxes })
     }
+}
+
+/// The plane of the least cost, as `(cost, axis, last bin on the left)`, on the axes whose `scale` is not 0. What lies in
+/// several bins is counted where it begins, in `enter`, and where it ends, in `leave`.
+pub(super) fn sweep(
+    boxes: &[[Box4; 3]],
+    enter: &[[u32; 4]],
+    leave: &[[u32; 4]],
+    scale: Lanes,
+    costs: &Costs,
+) -> Option<(f32, usize, usize)> {
+    // All axes at once: what the right sides cost, then the sums.
+    let planes = boxes.len() - 1;
+    let mut right_cost = [Lanes::splat(0.0); MAX_BINS];
+    let mut side = Side { boxes: [Box4::EMPTY; 3], counts: [0; 4] };
+    for i in (0..planes).rev() {
+        side = side.and(&boxes[i + 1], &leave[i + 1]);
+        right_cost[i] = side.cost(costs);
+    }
+    let mut side = Side { boxes: [Box4::EMPTY; 3], counts: [0; 4] };
+    let (mut least, mut last_left) = (Lanes::splat(f32::INFINITY), Lanes::splat(0.0));
+    for (i, right) in right_cost.iter().enumerate().take(planes) {
+        side = side.and(&boxes[i], &enter[i]);
+        let sum = side.cost(costs).plus(*right);
+        let better = sum.less(least);
+        least = sum.where_or(better, least);
+        last_left = Lanes::splat(i as f32).where_or(better, last_left);
+    }
+    let mut best = (f32::INFINITY, 0);
+    for axis in 0..3 {
+        if scale.0[axis] > 0.0 && least.0[axis] < best.0 {
+            best = (least.0[axis], axis);
+        }
+    }
+    let (cost, axis) = best;
+    (cost < f32::INFINITY).then(|| (cost, axis, last_left.0[axis] as usize))
+}
+
+/// The boxes around both sides of a plane.
+pub(super) fn sides(boxes: &[[Box4; 3]], axis: usize, last_left: usize) -> [Box4; 2] {
+    let (left, right) = boxes.split_at(last_left + 1);
+    [left, right].map(|side| side.iter().fold(Box4::EMPTY, |all, b| all.union(b[axis])))
 }
 
 /// What lies to one side of a plane, on each axis.
@@ -139,9 +155,9 @@ struct Side {
 impl Side {
     /// With one more bin.
     #[inline(always)]
-    fn and(self, bins: &Bins, i: usize) -> Side {
-        let around = |axis: usize| self.boxes[axis].union(bins.boxes[i][axis]);
-        let count = |axis: usize| self.counts[axis] + bins.counts[i][axis];
+    fn and(self, boxes: &[Box4; 3], counts: &[u32; 4]) -> Side {
+        let around = |axis: usize| self.boxes[axis].union(boxes[axis]);
+        let count = |axis: usize| self.counts[axis] + counts[axis];
         Side { boxes: [around(0), around(1), around(2)], counts: [count(0), count(1), count(2), count(3)] }
     }
 

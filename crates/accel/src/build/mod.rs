@@ -3,6 +3,7 @@
 pub(crate) mod binary;
 pub(crate) mod binned_sah;
 mod bins;
+mod clip;
 pub(crate) mod collapse;
 pub(crate) mod costs;
 mod lanes;
@@ -15,5 +16,8 @@ mod partition;
 pub(crate) mod reference;
 #[allow(dead_code)]
 pub(crate) mod reinsertion;
+mod spatial_bins;
+#[allow(dead_code)]
+pub(crate) mod spatial_split;
 #[cfg(test)]
 pub(crate) mod testing;
