@@ -55,7 +55,12 @@ fn boxes_of_what_moves_hold_it_at_every_moment() {
     for seed in 0..300 {
         let r = &mut Random::new(seed);
         let count = 2 + r.below(5) as usize;
-        let keys = keys(r, count, 3);
+        let mut keys = keys(r, count, 3);
+        if seed % 2 == 0 {
+            // Nearly at rest: what rounding moves stands out of the boxes at the keys.
+            let first = keys[0].clone();
+            keys.iter_mut().for_each(|k| k.clone_from(&first));
+        }
         let index = [0, 1, 2];
         let all = moving::bounds(&keys, index);
         let [open, close] = moving::linear_bounds(&keys, index);

@@ -108,6 +108,36 @@ fn curves_are_hulls_of_balls() {
 }
 
 #[test]
+fn a_start_that_lies_on_the_surface_to_the_bit_is_no_hit() {
+    let r = &mut Random::new(21);
+    let (bottom, top) = (Vec3::Z * -100.0, Vec3::Z * 100.0);
+    let shapes = [cylinder(bottom, top, 5.0), curve(&[(bottom, 5.0), (top, 5.0)])];
+    for _ in 0..4000 {
+        let side =
+            [Vec3::new(3.0, 4.0, 0.0), Vec3::new(-4.0, 3.0, 0.0), Vec3::new(0.0, -5.0, 0.0)][r.below(3) as usize];
+        let ray = Ray::new(side + Vec3::Z * (r.unit() - 0.5), r.cube());
+        let slant = ray.direction.as_dvec3().dot(side.as_dvec3());
+        for shape in &shapes {
+            let ts = ts(shape.clone(), &ray);
+            if slant > 0.0 {
+                assert!(ts.is_empty(), "{ts:?} {ray:?}");
+            } else {
+                // The chord across the circle, where it ends between the ends.
+                let across = ray.direction.truncate().as_dvec2();
+                let chord = -2.0 * slant / across.length_squared();
+                assert!(
+                    ts.len() <= 1
+                        && ts
+                            .iter()
+                            .all(|t| (f64::from(*t) - chord).abs() < 1e-4 * chord + 1e-12 || ray.at(*t).z.abs() > 99.0),
+                    "{ts:?} {chord} {ray:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn quads_count_u_and_v_from_their_first_corner_and_are_met_once_on_the_fold() {
     let square = || quad([Vec3::ZERO, Vec3::X * 4.0, Vec3::new(4.0, 4.0, 0.0), Vec3::Y * 4.0]);
     for (x, y) in [(1.0, 1.0), (3.0, 2.0), (1.0, 3.0), (3.0, 1.0), (2.0, 2.0), (0.0, 4.0)] {
