@@ -141,7 +141,7 @@ fn cuts_make_trees_cheaper() {
 #[test]
 fn what_coincides_or_shares_its_center_is_built_within_the_depth() {
     let one = soup(1, 5)[0];
-    let nested = |i: usize| one.map(|c| c.map(|x| x * 1.5_f32.powi(i as i32 % 60 - 30)));
+    let nested = |i: usize| one.map(|c| c.map(|x| x * f32::from_bits((97 + i as u32 % 60) << 23)));
     let centered = |i: usize| {
         let s = 1.0 + i as f32;
         [[-s, -s, -s], [s, s, s], [-s, s, -s]]
