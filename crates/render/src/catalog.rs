@@ -16,9 +16,40 @@ const BRUTE_FORCE: TypeSpec = TypeSpec {
     doc: "Every ray against every primitive: the test of all others.",
     params: &[],
 };
+const KD_TREE: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "kd_tree",
+    doc: "Kd-tree: space is halved by the planes of least expected cost, all of them weighed, in O(n log n) (Wald & Havran 2006). Nodes of 8 bytes; slow to build, quick to trace.",
+    params: &[],
+};
+const KD_TREE_FAST: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "kd_tree_fast",
+    doc: "Kd-tree of which the planes are chosen among evenly spaced ones (Hunt, Mark & Stoll 2006): built in half the time, for moving scenes.",
+    params: &[],
+};
+const GRID: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "grid",
+    doc: "Uniform grid, walked from cell to cell (Amanatides & Woo 1987), four cells to a primitive: very quick to build, good for what is small and evenly spread.",
+    params: &[],
+};
+const SPHERE_HIERARCHY: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "sphere_hierarchy",
+    doc: "Binary hierarchy of bounding spheres (Rubin & Whitted 1980): the comparison that speaks for boxes.",
+    params: &[],
+};
 
 /// Every accelerator type.
-pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] = &[(&BVH2, AccelKind::Bvh2), (&BRUTE_FORCE, AccelKind::BruteForce)];
+pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] = &[
+    (&BVH2, AccelKind::Bvh2),
+    (&KD_TREE, AccelKind::KdTree),
+    (&KD_TREE_FAST, AccelKind::KdTreeFast),
+    (&GRID, AccelKind::Grid),
+    (&SPHERE_HIERARCHY, AccelKind::SphereHierarchy),
+    (&BRUTE_FORCE, AccelKind::BruteForce),
+];
 
 /// The catalogue of this build.
 pub fn catalog() -> Catalog {

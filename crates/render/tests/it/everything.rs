@@ -201,13 +201,19 @@ fn tiles_that_have_come_further_wait_for_the_others() {
 }
 
 #[test]
-fn the_tree_finds_what_brute_force_finds() {
+fn every_accelerator_finds_what_brute_force_finds() {
     for toml in variants() {
-        let force = format!("{toml}\n[accelerator]\ntype = \"brute_force\"\n");
-        let (a, s) = expose(&compiled(&toml, None), 0..3);
-        let (b, t) = expose(&compiled(&force, None), 0..3);
-        assert!(a == b);
-        assert!(s.search != t.search, "both ran the same search");
+        let by = |name: &str| {
+            let toml = format!("{toml}\n[accelerator]\ntype = \"{name}\"\n");
+            expose(&compiled(&toml, None), 0..3)
+        };
+        let (expected, by_force) = by("brute_force");
+        let accelerators = catalog().types.into_iter().filter(|t| t.kind == Kind::Accelerator);
+        for name in accelerators.map(|t| t.name).filter(|name| *name != "brute_force") {
+            let (film, stats) = by(name);
+            assert!(film == expected, "{name}");
+            assert!(stats.search != by_force.search, "{name} ran the same search");
+        }
     }
 }
 
