@@ -59,14 +59,15 @@ impl Accel {
         let mut built: Vec<Built> = aggregates.iter().map(|_| Built::default()).collect();
         for i in check::build_order(&scene)?.order {
             let instances = place(&aggregates[i].instances, &whole);
-            whole[i] = all_bounds(&aggregates[i].geometries, &instances).fold(Bounds3::EMPTY, Bounds3::union);
             let structure = Structure::build(kind, &aggregates[i].geometries, &instances, executor);
+            let each = || all_bounds(&aggregates[i].geometries, &instances).fold(Bounds3::EMPTY, Bounds3::union);
+            whole[i] = structure.bounds().unwrap_or_else(each);
             built[i] = Built { structure, instances };
         }
         let instances = place(&scene.instances, &whole);
-        let finite = all_bounds(&scene.world, &instances).filter(Bounds3::is_finite);
-        let bounds = finite.fold(Bounds3::EMPTY, Bounds3::union);
         let structure = Structure::build(kind, &scene.world, &instances, executor);
+        let finite = || all_bounds(&scene.world, &instances).filter(Bounds3::is_finite);
+        let bounds = structure.bounds().unwrap_or_else(|| finite().fold(Bounds3::EMPTY, Bounds3::union));
         Ok(Accel { kind, scene, bounds, world: Built { structure, instances }, aggregates: built })
     }
 

@@ -168,6 +168,7 @@ pub mod cylinder;
 pub mod disk;
 mod error;
 mod executor;
+mod gather;
 mod grid;
 mod hit;
 mod instance;

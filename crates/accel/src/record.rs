@@ -1,6 +1,6 @@
 //! A primitive as a leaf holds it, and its test: what the structures that keep no blocks of their own share.
 
-use crate::build::reference::{MAX_ID, Reference};
+use crate::build::reference::MAX_ID;
 use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::instance::PlacedInstance;
 use crate::prepared_ray::PreparedRay;
@@ -12,27 +12,6 @@ use kirkas_geometry::{Bounds3, Vec3};
 
 /// The geometry field of a reference to an instance.
 pub(crate) const IS_INSTANCE: u32 = MAX_ID;
-
-/// What a level holds, before a structure is built over it.
-pub(crate) struct Gathered {
-    pub references: Vec<Reference>,
-    /// What no box holds; to be tested by every ray.
-    pub unbounded: Vec<Record>,
-}
-
-/// Gather the boxes of a level; what is empty is left out.
-pub(crate) fn gather(geometries: &[Geometry], instances: &[PlacedInstance]) -> Gathered {
-    let count = geometries.iter().map(|g| g.shape.len()).sum::<usize>() + instances.len();
-    let mut all = Gathered { references: Vec::with_capacity(count), unbounded: Vec::new() };
-    for (bounds, geometry, index) in all_references(geometries, instances) {
-        if bounds.is_finite() {
-            all.references.push(Reference::new(&bounds, geometry, index));
-        } else if !bounds.is_empty() {
-            all.unbounded.push(Record::new(geometries, geometry, index));
-        }
-    }
-    all
-}
 
 /// Every primitive and instance of a level with its bounds.
 pub(crate) fn all_references<'a>(

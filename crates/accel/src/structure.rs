@@ -6,6 +6,7 @@ use crate::prepared_ray::PreparedRay;
 use crate::scene_geometry::Geometry;
 use crate::search::{Enter, Level, Search};
 use crate::{AccelKind, Executor, brute_force, bvh2, grid, kd_tree, sphere_hierarchy, wide};
+use kirkas_geometry::Bounds3;
 
 /// A structure over one level.
 #[derive(Default)]
@@ -82,6 +83,15 @@ impl Structure {
             Structure::SphereHierarchy(tree) => tree.closest_point(level, space, search, enter),
             Structure::KdTree(tree) => tree.closest_point(level, space, search, enter),
             Structure::Grid(grid) => grid.closest_point(level, space, search, enter),
+        }
+    }
+
+    /// Around all that is held, where that is known without asking each primitive.
+    pub fn bounds(&self) -> Option<Bounds3> {
+        match self {
+            Structure::Bvh2(tree) => tree.bounds(),
+            Structure::Bvh8(tree) => tree.bounds(),
+            _ => None,
         }
     }
 

@@ -11,7 +11,7 @@ mod lanes;
 mod layout;
 #[allow(dead_code)]
 pub(crate) mod morton;
-mod parallel;
+pub(crate) mod parallel;
 mod partition;
 pub(crate) mod reference;
 #[allow(dead_code)]

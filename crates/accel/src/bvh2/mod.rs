@@ -11,8 +11,9 @@ use crate::build::binary::{BinaryTree, Child, Node};
 use crate::build::binned_sah;
 use crate::build::costs::Costs;
 use crate::build::reference::Reference;
+use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
-use crate::record::{Gathered, Record, gather};
+use crate::record::Record;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 
@@ -32,14 +33,19 @@ pub(crate) struct Tree {
 impl Tree {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
-        let Gathered { references, unbounded } = gather(geometries, instances);
+        let Gathered { references, bounds, unbounded } = gather(geometries, instances, executor);
         let BinaryTree { nodes, root, references } = binned_sah::build(references, &Costs::BVH2, executor);
 
         // Put the primitives' data where the leaves look for it.
         let record = |r: &Reference| Record::new(geometries, r.ids().0, r.ids().1);
         let records: Vec<Record> = references.iter().map(record).collect();
-        let bounds = references.iter().map(Reference::bounds).reduce(Bounds3::union);
+        let bounds = root.map(|_| bounds);
         Tree { nodes, root, records, unbounded, bounds }
+    }
+
+    /// Around all that is held; `None` when something has no box.
+    pub fn bounds(&self) -> Option<Bounds3> {
+        self.unbounded.is_empty().then(|| self.bounds.unwrap_or(Bounds3::EMPTY))
     }
 
     pub fn node_count(&self) -> usize {

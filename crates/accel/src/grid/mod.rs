@@ -11,8 +11,10 @@ mod closest;
 mod validate;
 mod walk;
 
+use crate::Serial;
+use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
-use crate::record::{Gathered, Record, gather};
+use crate::record::Record;
 use crate::scene_geometry::Geometry;
 use build::{Lists, Planes};
 use kirkas_geometry::Bounds3;
@@ -36,7 +38,7 @@ struct Cells {
 impl Grid {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance]) -> Self {
-        let Gathered { references, unbounded } = gather(geometries, instances);
+        let Gathered { references, unbounded, .. } = gather(geometries, instances, &Serial);
         let records: Vec<Record> = references.iter().map(|r| Record::new(geometries, r.ids().0, r.ids().1)).collect();
         let bounds = references.iter().map(|r| r.bounds()).reduce(Bounds3::union);
         let cells = bounds.map(|bounds| {

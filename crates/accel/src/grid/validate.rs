@@ -2,9 +2,11 @@
 
 use super::Grid;
 use super::build::{for_each_cell, grown, region};
+use crate::Serial;
 use crate::cells::growth;
+use crate::gather::gather;
 use crate::instance::PlacedInstance;
-use crate::record::{check_complete, gather};
+use crate::record::check_complete;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 
@@ -24,7 +26,7 @@ impl Grid {
                 return Err(format!("the planes of axis {k} are not in order"));
             }
         }
-        let references = gather(geometries, instances).references;
+        let references = gather(geometries, instances, &Serial).references;
         let grow = growth(&cells.bounds);
         for (i, (reference, record)) in references.iter().zip(&self.records).enumerate() {
             let (region, bounds) = (region(reference, record, grow), grown(&reference.bounds(), grow));

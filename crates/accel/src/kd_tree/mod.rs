@@ -13,8 +13,9 @@ mod validate;
 use crate::Executor;
 use crate::build::reference::Reference;
 use crate::cells::{Clip, growth};
+use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
-use crate::record::{Gathered, Record, gather};
+use crate::record::Record;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 use node::Node;
@@ -50,7 +51,7 @@ impl Tree {
         instances: &[PlacedInstance],
         executor: &dyn Executor,
     ) -> Self {
-        let Gathered { references, unbounded } = gather(geometries, instances);
+        let Gathered { references, unbounded, .. } = gather(geometries, instances, executor);
         let Some(bounds) = references.iter().map(Reference::bounds).reduce(Bounds3::union) else {
             return Tree { unbounded, ..Tree::default() };
         };

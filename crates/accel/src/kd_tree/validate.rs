@@ -3,10 +3,12 @@
 use super::build::{MAX_DEPTH, NODE_COST};
 use super::node::Node;
 use super::{Primitives, Tree};
+use crate::Serial;
 use crate::build::reference::Reference;
 use crate::cells::growth;
+use crate::gather::gather;
 use crate::instance::PlacedInstance;
-use crate::record::{check_complete, gather};
+use crate::record::check_complete;
 use crate::scene_geometry::Geometry;
 use kirkas_geometry::Bounds3;
 
@@ -14,7 +16,7 @@ impl Tree {
     /// Each primitive in each leaf where it can be hit, each node reached once, cells nested, indices in range.
     pub fn validate(&self, geometries: &[Geometry], instances: &[PlacedInstance]) -> Result<(), String> {
         check_complete(self.records.iter().chain(&self.unbounded), geometries, instances)?;
-        let references = gather(geometries, instances).references;
+        let references = gather(geometries, instances, &Serial).references;
         let Some(bounds) = self.bounds else { return Ok(()) };
         if !references.iter().all(|r| bounds.union(r.bounds()) == bounds) {
             return Err("the root does not hold every primitive".into());

@@ -15,8 +15,9 @@ use crate::build::binary::{BinaryTree, Child};
 use crate::build::binned_sah;
 use crate::build::costs::Costs;
 use crate::build::reference::Reference;
+use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
-use crate::record::{Gathered, Record, RecordKind, gather};
+use crate::record::{Record, RecordKind};
 use crate::scene_geometry::{Geometry, Sphere};
 use crate::{Executor, primitive};
 use kirkas_geometry::{Bounds3, Vec3};
@@ -42,7 +43,7 @@ struct Node {
 impl Tree {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
-        let Gathered { references, unbounded } = gather(geometries, instances);
+        let Gathered { references, unbounded, .. } = gather(geometries, instances, executor);
         let tree = binned_sah::build(references, &Costs::BVH2, executor);
         let record = |r: &Reference| Record::new(geometries, r.ids().0, r.ids().1);
         let records: Vec<Record> = tree.references.iter().map(record).collect();

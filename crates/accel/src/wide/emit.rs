@@ -30,15 +30,17 @@ struct Emitter<'a> {
 /// The arena and where its root is.
 pub(super) fn emit(
     tree: &BinaryTree,
+    bounds: &Bounds3,
     geometries: &[Geometry],
     numbers: &Numbers,
     executor: &dyn Executor,
 ) -> (Vec<Line>, Place) {
     let collapse = Collapse::new(tree, Costs { node: 1.0, leaf: 1.0 }, executor);
     let Some(root) = collapse.root(tree) else { return (Vec::new(), Place::END) };
-    let mut e = Emitter { tree, collapse, geometries, numbers, lines: Vec::new() };
-    let bounds = tree.references.iter().fold(Bounds3::EMPTY, |b, r| b.union(r.bounds()));
-    let (place, _) = if root.is_leaf() { e.leaf(root, &bounds) } else { e.node(root) };
+    // Room for one leaf of each binary one, and a wide node for two binary ones; what is not used is never touched.
+    let room = (tree.nodes.len() + 1) * Block::LINES.max(List::LINES) + tree.nodes.len() / 2 * Node::LINES;
+    let mut e = Emitter { tree, collapse, geometries, numbers, lines: Vec::with_capacity(room) };
+    let (place, _) = if root.is_leaf() { e.leaf(root, bounds) } else { e.node(root) };
     assert!(e.lines.len() <= MAX_LINES, "a tree of more than 16 GB");
     e.lines.shrink_to_fit();
     (e.lines, place)

@@ -24,8 +24,9 @@ use crate::Executor;
 use crate::build::binary::MAX_DEPTH;
 use crate::build::binned_sah;
 use crate::build::costs::Costs;
+use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
-use crate::record::{Gathered, Record, gather};
+use crate::record::Record;
 use crate::scene_geometry::{Geometry, Shape};
 use arena::Line;
 use kirkas_geometry::Bounds3;
@@ -53,18 +54,22 @@ pub(crate) struct Tree {
 impl Tree {
     /// Build over a level.
     pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
-        let Gathered { references, unbounded } = gather(geometries, instances);
+        let Gathered { references, bounds, unbounded } = gather(geometries, instances, executor);
         let binary = binned_sah::build(references, &costs(geometries, instances), executor);
         let numbers = Numbers::new(geometries);
-        let bounds = binary.references.iter().map(|r| r.bounds()).fold(Bounds3::EMPTY, Bounds3::union);
         let reach = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
-        let (lines, root) = emit::emit(&binary, geometries, &numbers, executor);
+        let (lines, root) = emit::emit(&binary, &bounds, geometries, &numbers, executor);
         Tree { lines, root, numbers, unbounded, bounds, reach, is_split: false, has_avx2: has_avx2() }
     }
 
     /// Answer with the code for any processor, as if this one had no AVX2.
     pub fn forget_avx2(&mut self) {
         self.has_avx2 = false;
+    }
+
+    /// Around all that is held; `None` when something has no box.
+    pub fn bounds(&self) -> Option<Bounds3> {
+        self.unbounded.is_empty().then_some(self.bounds)
     }
 
     pub fn bytes(&self) -> usize {
