@@ -41,11 +41,15 @@ impl Structure {
         instances: &[PlacedInstance],
         executor: &dyn Executor,
     ) -> Self {
+        let bvh8 = |quality| Structure::Bvh8(wide::Tree::build(quality, geometries, instances, executor));
         let kd_tree = |planes| Structure::KdTree(kd_tree::Tree::build(planes, geometries, instances, executor));
         match kind {
             AccelKind::BruteForce => Structure::BruteForce,
             AccelKind::Bvh2 => Structure::Bvh2(bvh2::Tree::build(geometries, instances, executor)),
-            AccelKind::Bvh8 => Structure::Bvh8(wide::Tree::build(geometries, instances, executor)),
+            AccelKind::Bvh8Fast => bvh8(wide::Quality::Fast),
+            AccelKind::Bvh8 => bvh8(wide::Quality::Default),
+            AccelKind::Bvh8Best => bvh8(wide::Quality::Best),
+            AccelKind::Bvh8Compact => bvh8(wide::Quality::Compact),
             AccelKind::SphereHierarchy => {
                 Structure::SphereHierarchy(sphere_hierarchy::Tree::build(geometries, instances, executor))
             }

@@ -10,6 +10,30 @@ const BVH2: TypeSpec = TypeSpec {
     doc: "Binary bounding-volume hierarchy, built by the surface-area heuristic.",
     params: &[],
 };
+const BVH8: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "bvh8",
+    doc: "Bounding-volume hierarchy with eight children to a node and eight triangles to a leaf, tested at once; built by the surface-area heuristic. The default.",
+    params: &[],
+};
+const BVH8_FAST: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "bvh8_fast",
+    doc: "`bvh8`, built along a Morton curve in a fraction of the time: for scenes that move.",
+    params: &[],
+};
+const BVH8_BEST: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "bvh8_best",
+    doc: "`bvh8` with spatial splits (Stich, Friedrich & Dietrich 2009), then improved by reinsertion (Meister & Bittner 2018): slower to build, quickest to trace, most of all where triangles are long and thin.",
+    params: &[],
+};
+const BVH8_COMPACT: TypeSpec = TypeSpec {
+    kind: Kind::Accelerator,
+    name: "bvh8_compact",
+    doc: "`bvh8` with leaves that hold numbers instead of corners: about a third of the memory, slower to trace.",
+    params: &[],
+};
 const BRUTE_FORCE: TypeSpec = TypeSpec {
     kind: Kind::Accelerator,
     name: "brute_force",
@@ -43,6 +67,10 @@ const SPHERE_HIERARCHY: TypeSpec = TypeSpec {
 
 /// Every accelerator type.
 pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] = &[
+    (&BVH8, AccelKind::Bvh8),
+    (&BVH8_FAST, AccelKind::Bvh8Fast),
+    (&BVH8_BEST, AccelKind::Bvh8Best),
+    (&BVH8_COMPACT, AccelKind::Bvh8Compact),
     (&BVH2, AccelKind::Bvh2),
     (&KD_TREE, AccelKind::KdTree),
     (&KD_TREE_FAST, AccelKind::KdTreeFast),

@@ -258,7 +258,7 @@ fn compile(
         shutter: (open, close),
     };
     let kind_name = singles.params(Kind::Accelerator).spec().name;
-    let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::Bvh2, |a| a.1);
+    let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::default(), |a| a.1);
     let accel = Accel::build(kind, scene_geometry, &Threads).map_err(bad_geometry)?;
 
     if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {

@@ -82,7 +82,7 @@ impl Kind {
             Kind::Film => Some("image"),
             Kind::Sampler => Some("sobol"),
             Kind::Integrator => Some("whitted"),
-            Kind::Accelerator => Some("bvh2"),
+            Kind::Accelerator => Some("bvh8"),
             Kind::Background => Some("constant"),
             _ => None,
         }

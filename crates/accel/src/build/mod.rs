@@ -7,17 +7,13 @@ mod clip;
 pub(crate) mod collapse;
 pub(crate) mod costs;
 mod lanes;
-#[allow(dead_code)]
 mod layout;
-#[allow(dead_code)]
 pub(crate) mod morton;
 pub(crate) mod parallel;
 mod partition;
 pub(crate) mod reference;
-#[allow(dead_code)]
 pub(crate) mod reinsertion;
 mod spatial_bins;
-#[allow(dead_code)]
 pub(crate) mod spatial_split;
 #[cfg(test)]
 pub(crate) mod testing;

@@ -24,6 +24,7 @@ struct Emitter<'a> {
     collapse: Collapse,
     geometries: &'a [Geometry],
     numbers: &'a Numbers,
+    is_compact: bool,
     lines: Vec<Line>,
 }
 
@@ -33,13 +34,14 @@ pub(super) fn emit(
     bounds: &Bounds3,
     geometries: &[Geometry],
     numbers: &Numbers,
+    is_compact: bool,
     executor: &dyn Executor,
 ) -> (Vec<Line>, Place) {
     let collapse = Collapse::new(tree, Costs { node: 1.0, leaf: 1.0 }, executor);
     let Some(root) = collapse.root(tree) else { return (Vec::new(), Place::END) };
     // Room for one leaf of each binary one, and a wide node for two binary ones; what is not used is never touched.
     let room = (tree.nodes.len() + 1) * Block::LINES.max(List::LINES) + tree.nodes.len() / 2 * Node::LINES;
-    let mut e = Emitter { tree, collapse, geometries, numbers, lines: Vec::with_capacity(room) };
+    let mut e = Emitter { tree, collapse, geometries, numbers, is_compact, lines: Vec::with_capacity(room) };
     let (place, _) = if root.is_leaf() { e.leaf(root, bounds) } else { e.node(root) };
     assert!(e.lines.len() <= MAX_LINES, "a tree of more than 16 GB");
     e.lines.shrink_to_fit();
@@ -112,6 +114,9 @@ impl Emitter<'_> {
 
     /// The references as a block with the area of its triangles, when all are triangles.
     fn block(&self, run: &[Reference]) -> Option<(Block, f32)> {
+        if self.is_compact {
+            return None;
+        }
         let mut block = Block::EMPTY;
         let mut area = 0.0;
         for (lane, r) in run.iter().enumerate() {

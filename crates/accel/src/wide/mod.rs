@@ -22,10 +22,13 @@ pub(crate) use in_flight::Batch;
 
 use crate::Executor;
 use crate::build::binary::MAX_DEPTH;
-use crate::build::binned_sah;
 use crate::build::costs::Costs;
+use crate::build::reference::Reference;
+use crate::build::reinsertion::{self, Effort};
+use crate::build::{binned_sah, morton, spatial_split};
 use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
+use crate::primitive;
 use crate::record::Record;
 use crate::scene_geometry::{Geometry, Shape};
 use arena::Line;
@@ -35,6 +38,19 @@ use numbers::Numbers;
 
 /// Levels of nodes: no more than the binary tree had.
 const MAX_LEVELS: usize = MAX_DEPTH;
+
+/// What a build spends for the rays to come.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Quality {
+    /// The least time: along a Morton curve.
+    Fast,
+    /// By the surface-area heuristic.
+    Default,
+    /// With spatial splits, and then improved.
+    Best,
+    /// The least memory: leaves hold numbers instead of corners.
+    Compact,
+}
 
 /// A tree over one level: the world with its instances, or one aggregate.
 pub(crate) struct Tree {
@@ -53,13 +69,34 @@ pub(crate) struct Tree {
 
 impl Tree {
     /// Build over a level.
-    pub fn build(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Self {
+    pub fn build(
+        quality: Quality,
+        geometries: &[Geometry],
+        instances: &[PlacedInstance],
+        executor: &dyn Executor,
+    ) -> Self {
         let Gathered { references, bounds, unbounded } = gather(geometries, instances, executor);
-        let binary = binned_sah::build(references, &costs(geometries, instances), executor);
+        let (count, costs) = (references.len(), costs(geometries, instances));
+        let corners = |r: &Reference| {
+            let (geometry, index) = r.ids();
+            match &geometries.get(geometry as usize)?.shape {
+                Shape::Triangles { positions, indices } => Some(primitive::corners(positions, indices[index as usize])),
+                _ => None,
+            }
+        };
+        let binary = match quality {
+            Quality::Fast => morton::build(references, executor),
+            Quality::Default | Quality::Compact => binned_sah::build(references, &costs, executor),
+            Quality::Best => {
+                let split = spatial_split::build(references, &corners, &costs, executor);
+                reinsertion::improve(split, Effort::BEST, executor)
+            }
+        };
+        let is_split = binary.references.len() > count;
         let numbers = Numbers::new(geometries);
         let reach = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
-        let (lines, root) = emit::emit(&binary, &bounds, geometries, &numbers, executor);
-        Tree { lines, root, numbers, unbounded, bounds, reach, is_split: false, has_avx2: has_avx2() }
+        let (lines, root) = emit::emit(&binary, &bounds, geometries, &numbers, quality == Quality::Compact, executor);
+        Tree { lines, root, numbers, unbounded, bounds, reach, is_split, has_avx2: has_avx2() }
     }
 
     /// Answer with the code for any processor, as if this one had no AVX2.
