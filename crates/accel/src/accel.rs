@@ -18,7 +18,7 @@ use kirkas_geometry::{Bounds3, Ray};
 pub struct Accel {
     kind: AccelKind,
     pub(crate) scene: SceneGeometry,
-    bounds: Bounds3,
+    pub(crate) bounds: Bounds3,
     pub(crate) world: Built,
     pub(crate) aggregates: Vec<Built>,
 }
@@ -50,25 +50,42 @@ pub struct Statistics {
 impl Accel {
     /// Build. The result does not depend on the executor.
     pub fn build(kind: AccelKind, scene: SceneGeometry, executor: &dyn Executor) -> Result<Accel, AccelError> {
+        Self::assemble(kind, scene, |geometries, instances| Ok(Structure::build(kind, geometries, instances, executor)))
+    }
+
+    /// Put structures over all levels, aggregates after those they hold and the world last.
+    pub(crate) fn assemble<E: From<AccelError>>(
+        kind: AccelKind,
+        scene: SceneGeometry,
+        mut structure_over: impl FnMut(&[Geometry], &[PlacedInstance]) -> Result<Structure, E>,
+    ) -> Result<Accel, E> {
         check::scene(&scene)?;
         let aggregates = &scene.aggregates;
         let mut whole = vec![Bounds3::EMPTY; aggregates.len()];
-        let place = |instances: &[Instance], whole: &[Bounds3]| -> Vec<PlacedInstance> {
-            instances.iter().map(|i| PlacedInstance::new(i, &whole[i.aggregate], scene.shutter)).collect()
-        };
         let mut built: Vec<Built> = aggregates.iter().map(|_| Built::default()).collect();
         for i in check::build_order(&scene)?.order {
-            let instances = place(&aggregates[i].instances, &whole);
-            let structure = Structure::build(kind, &aggregates[i].geometries, &instances, executor);
+            let instances = place(&aggregates[i].instances, &whole, scene.shutter);
+            let structure = structure_over(&aggregates[i].geometries, &instances)?;
             let each = || all_bounds(&aggregates[i].geometries, &instances).fold(Bounds3::EMPTY, Bounds3::union);
             whole[i] = structure.bounds().unwrap_or_else(each);
             built[i] = Built { structure, instances };
         }
-        let instances = place(&scene.instances, &whole);
-        let structure = Structure::build(kind, &scene.world, &instances, executor);
+        let instances = place(&scene.instances, &whole, scene.shutter);
+        let structure = structure_over(&scene.world, &instances)?;
         let finite = || all_bounds(&scene.world, &instances).filter(Bounds3::is_finite);
         let bounds = structure.bounds().unwrap_or_else(|| finite().fold(Bounds3::EMPTY, Bounds3::union));
         Ok(Accel { kind, scene, bounds, world: Built { structure, instances }, aggregates: built })
+    }
+
+    /// This structure, answering with the code for any processor even where this one has AVX2: the same answers, later. The simple
+    /// twin that tests the fast code.
+    pub fn portable(mut self) -> Self {
+        for built in self.aggregates.iter_mut().chain([&mut self.world]) {
+            if let Structure::Bvh8(tree) = &mut built.structure {
+                tree.forget_avx2();
+            }
+        }
+        self
     }
 
     /// The nearest hit. `ray_index` is handed to the query's filter, and finds what this ray excludes.
@@ -247,6 +264,11 @@ impl Accel {
             }
         });
     }
+}
+
+/// Instances at their places; `whole` are the bounds of the aggregates.
+pub(crate) fn place(instances: &[Instance], whole: &[Bounds3], shutter: (f64, f64)) -> Vec<PlacedInstance> {
+    instances.iter().map(|i| PlacedInstance::new(i, &whole[i.aggregate], shutter)).collect()
 }
 
 /// The boxes of all that a level holds and that is not empty, unbounded ones too.

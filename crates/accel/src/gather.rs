@@ -104,6 +104,12 @@ fn gather_what_is_bounded(geometries: &[Geometry], instances: &[PlacedInstance])
     all
 }
 
+/// What no box holds.
+pub(crate) fn gather_unbounded(geometries: &[Geometry], instances: &[PlacedInstance]) -> Vec<Record> {
+    let unbounded = all_references(geometries, instances).filter(|(b, ..)| !b.is_empty() && !b.is_finite());
+    unbounded.map(|(_, geometry, index)| Record::new(geometries, geometry, index)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -30,10 +30,7 @@ pub(crate) fn check_complete<'a>(
     geometries: &[Geometry],
     instances: &[PlacedInstance],
 ) -> Result<(), String> {
-    let ids = |r: &Record| {
-        if r.kind == RecordKind::Instance { (IS_INSTANCE, r.primitive) } else { (r.geometry, r.primitive) }
-    };
-    let mut held: Vec<(u32, u32)> = held.map(ids).collect();
+    let mut held: Vec<(u32, u32)> = held.map(Record::ids).collect();
     held.sort_unstable();
     let mut wanted: Vec<(u32, u32)> =
         all_references(geometries, instances).filter(|(b, ..)| !b.is_empty()).map(|(_, g, p)| (g, p)).collect();
@@ -78,6 +75,11 @@ impl Record {
             Some(_) => (RecordKind::Other, [[0.0; 3]; 3]),
         };
         Record { corners, geometry, primitive, kind }
+    }
+
+    /// Geometry and primitive; of an instance [`IS_INSTANCE`] and its index.
+    pub fn ids(&self) -> (u32, u32) {
+        (if self.kind == RecordKind::Instance { IS_INSTANCE } else { self.geometry }, self.primitive)
     }
 
     /// Test it; `enter` searches an instance.

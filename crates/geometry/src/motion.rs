@@ -92,6 +92,12 @@ impl AnimatedTransform {
         AnimatedTransform { links: outer.links.iter().chain(&self.links).cloned().collect() }
     }
 
+    /// All numbers that define it, in an order of their own: motions that give the same are the same.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> + '_ {
+        let key = |k: &Key| [k.time].into_iter().chain(k.matrix.to_cols_array());
+        self.links.iter().flat_map(move |keys| [keys.len() as f64].into_iter().chain(keys.iter().flat_map(key)))
+    }
+
     /// The times of all key frames.
     pub fn key_times(&self) -> impl Iterator<Item = f64> + '_ {
         self.links.iter().flatten().map(|k| k.time)

@@ -97,14 +97,18 @@ impl PointSearch {
         distance <= self.limit
     }
 
+    /// The query's time as a part of the shutter.
+    pub fn moment(&self, level: Level) -> f32 {
+        crate::moving::moment(self.query.time, level.shutter)
+    }
+
     /// Look at a primitive.
     pub fn consider(&mut self, level: Level, space: &PointSpace, geometry: u32, primitive: u32) {
         let g = &level.geometries[geometry as usize];
         if g.mask & self.query.mask == 0 {
             return;
         }
-        let moment = crate::moving::moment(self.query.time, level.shutter);
-        let Some(found) = distance::closest(&g.shape, primitive, moment, space) else { return };
+        let Some(found) = distance::closest(&g.shape, primitive, self.moment(level), space) else { return };
         let off = (found.position - self.point).length();
         let hit = PointHit {
             distance: off as f32,

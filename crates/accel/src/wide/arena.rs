@@ -1,6 +1,6 @@
 //! The memory of a tree: 64-byte lines that hold nodes and leaves side by side, without pointers.
 
-use super::node::{BLOCK_LINES, Block, LIST_LINES, List, NODE_LINES, Node};
+use super::node::{BLOCK_LINES, Block, LIST_LINES, List, MOTION_LINES, MotionNode, NODE_LINES, Node};
 
 /// One cache line.
 #[derive(Clone, Copy)]
@@ -20,6 +20,10 @@ unsafe impl Item for Node {
     const LINES: usize = NODE_LINES;
 }
 // SAFETY: as above.
+unsafe impl Item for MotionNode {
+    const LINES: usize = MOTION_LINES;
+}
+// SAFETY: as above.
 unsafe impl Item for Block {
     const LINES: usize = BLOCK_LINES;
 }
@@ -27,7 +31,9 @@ unsafe impl Item for Block {
 unsafe impl Item for List {
     const LINES: usize = LIST_LINES;
 }
-const _: () = assert!(size_of::<Node>() == 256 && size_of::<Block>() == 320 && size_of::<List>() == 64);
+const _: () = assert!(
+    size_of::<Node>() == 256 && size_of::<MotionNode>() == 448 && size_of::<Block>() == 320 && size_of::<List>() == 64
+);
 
 /// Write an item to its lines.
 pub(super) fn put<T: Item>(lines: &mut [Line], item: &T) {

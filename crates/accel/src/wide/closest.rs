@@ -2,7 +2,7 @@
 
 use super::Tree;
 use super::arena::read;
-use super::node::{Block, Node, WIDTH};
+use super::node::{Block, WIDTH};
 use crate::closest::{EnterPoint, PointSearch, PointSpace};
 use crate::record::IS_INSTANCE;
 use crate::search::Level;
@@ -19,8 +19,7 @@ impl Tree {
             if place.is_end() || !search.is_near(distance) {
                 continue;
             }
-            if place.is_node() {
-                let Some(node) = read::<Node>(&self.lines, place.line()) else { continue };
+            if let Some(node) = self.node_at(place, search.moment(level)) {
                 let first = stack.len();
                 for slot in (0..WIDTH).filter(|&slot| !node.children[slot].is_end()) {
                     let distance = search.box_distance(space, &node.bounds(slot));

@@ -11,9 +11,12 @@ mod box_ray;
 mod closest;
 mod emit;
 mod in_flight;
+mod motion;
 mod node;
 mod numbers;
 mod packet;
+mod refit;
+mod saved;
 mod single;
 mod validate;
 mod walker;
@@ -33,6 +36,7 @@ use crate::record::Record;
 use crate::scene_geometry::{Geometry, Shape};
 use arena::Line;
 use kirkas_geometry::Bounds3;
+use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 use node::Place;
 use numbers::Numbers;
 
@@ -64,6 +68,8 @@ pub(crate) struct Tree {
     reach: f32,
     /// True when a primitive may be in several leaves, in parts.
     is_split: bool,
+    /// True when there may be nodes of what moves.
+    is_moving: bool,
     has_avx2: bool,
 }
 
@@ -75,8 +81,12 @@ impl Tree {
         instances: &[PlacedInstance],
         executor: &dyn Executor,
     ) -> Self {
-        let Gathered { references, bounds, unbounded } = gather(geometries, instances, executor);
+        let Gathered { mut references, bounds, unbounded } = gather(geometries, instances, executor);
         let (count, costs) = (references.len(), costs(geometries, instances));
+        let is_moving = motion::is_moving(geometries);
+        if is_moving {
+            motion::take_middles(&mut references, geometries);
+        }
         let corners = |r: &Reference| {
             let (geometry, index) = r.ids();
             match &geometries.get(geometry as usize)?.shape {
@@ -94,9 +104,23 @@ impl Tree {
         };
         let is_split = binary.references.len() > count;
         let numbers = Numbers::new(geometries);
-        let reach = if bounds.is_empty() { 0.0 } else { bounds.min.abs().max(bounds.max.abs()).max_element() };
         let (lines, root) = emit::emit(&binary, &bounds, geometries, &numbers, quality == Quality::Compact, executor);
-        Tree { lines, root, numbers, unbounded, bounds, reach, is_split, has_avx2: has_avx2() }
+        let mut tree =
+            Tree { lines, root, numbers, unbounded, bounds, reach: 0.0, is_split, is_moving, has_avx2: has_avx2() };
+        if is_moving {
+            tree.set_in_motion(geometries, instances);
+        }
+        tree.reach = tree.find_reach();
+        tree
+    }
+
+    /// A number that no coordinate of a box exceeds.
+    fn find_reach(&self) -> f32 {
+        let of = |b: Bounds3| if b.is_empty() { 0.0 } else { b.min.abs().max(b.max.abs()).max_element() };
+        let around = self.root_bounds();
+        // What is interpolated may be rounded beyond both ends.
+        let room = if around.is_moving { 1.0 + 8.0 * UNIT_ROUNDOFF } else { 1.0 };
+        of(self.bounds).max(of(around.open)).max(of(around.close)) * room
     }
 
     /// Answer with the code for any processor, as if this one had no AVX2.

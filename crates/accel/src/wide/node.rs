@@ -1,4 +1,4 @@
-//! How the tree lies in memory: one arena of 64-byte lines, in which nodes take 4 lines and leaf blocks 5.
+//! How the tree lies in memory: one arena of 64-byte lines, in which nodes take 4 lines, nodes of what moves 7, and leaf blocks 5.
 
 use kirkas_geometry::{Bounds3, Vec3};
 
@@ -6,6 +6,8 @@ use kirkas_geometry::{Bounds3, Vec3};
 pub(super) const WIDTH: usize = 8;
 /// Lines of a [`Node`].
 pub(super) const NODE_LINES: usize = size_of::<Node>() / 64;
+/// Lines of a [`MotionNode`].
+pub(super) const MOTION_LINES: usize = size_of::<MotionNode>() / 64;
 /// Lines of a [`Block`].
 pub(super) const BLOCK_LINES: usize = size_of::<Block>() / 64;
 /// Lines of a [`List`].
@@ -23,6 +25,16 @@ pub(super) struct Node {
     pub order: [u16; WIDTH],
     /// All ones for an empty slot, else 0.
     pub empty: [u16; WIDTH],
+}
+
+/// An inner node whose boxes change linearly in time.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct MotionNode {
+    /// The node, with the boxes at the moment when the shutter opens. It comes first, so that the children are found alike.
+    pub node: Node,
+    /// The planes when the shutter closes.
+    pub close: [[f32; WIDTH]; 6],
 }
 
 /// Up to 8 triangles, as a structure of arrays.
@@ -54,6 +66,7 @@ pub(super) const MAX_LINES: usize = 1 << 28;
 const BLOCK: u32 = 1 << 31;
 const LIST: u32 = 1 << 28;
 const END: u32 = 2 << 28;
+const MOTION: u32 = 3 << 28;
 const LINE: u32 = (1 << 28) - 1;
 
 impl Place {
@@ -64,6 +77,18 @@ impl Place {
     pub fn node(line: usize) -> Self {
         debug_assert!(line < MAX_LINES);
         Place(line as u32)
+    }
+
+    /// An inner node whose boxes move.
+    pub fn motion(line: usize) -> Self {
+        debug_assert!(line < MAX_LINES);
+        Place(MOTION | line as u32)
+    }
+
+    /// The same at another line.
+    pub fn moved_to(self, line: usize) -> Self {
+        debug_assert!(line < MAX_LINES);
+        Place(self.0 & !LINE | line as u32)
     }
 
     /// A block of `count` triangles.
@@ -86,6 +111,22 @@ impl Place {
     #[inline(always)]
     pub fn is_block(self) -> bool {
         self.0 & BLOCK != 0
+    }
+
+    /// An inner node whose boxes move. It is stepped on in the way of leaves, of which it is the rarest.
+    #[inline(always)]
+    pub fn is_motion(self) -> bool {
+        self.0 >> 28 == MOTION >> 28
+    }
+
+    /// Lines of the leaf.
+    pub fn leaf_lines(self) -> usize {
+        if self.is_block() { BLOCK_LINES } else { LIST_LINES }
+    }
+
+    /// A list of primitives.
+    pub fn is_list(self) -> bool {
+        self.0 >> 28 == LIST >> 28
     }
 
     #[inline(always)]

@@ -138,7 +138,7 @@ unsafe fn pack<B: Backend>(
     done: &mut dyn FnMut(usize, Option<Hit>),
 ) -> bool {
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
-    if !tree.root.is_node() {
+    if !tree.root.is_node() || tree.is_moving {
         return false;
     }
     let mut members: [MaybeUninit<Member>; PACKET] = [const { MaybeUninit::uninit() }; PACKET];

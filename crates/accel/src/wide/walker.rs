@@ -4,12 +4,12 @@
 use super::arena::{self, Line};
 use super::backend::{Backend, Keys, NO_KEY, Weights, key};
 use super::box_ray::BoxRay;
-use super::node::{Block, List, Node, Place};
+use super::node::{Block, List, MotionNode, Node, Place};
 use super::{MAX_LEVELS, Tree};
 use crate::prepared_ray::PreparedRay;
-use crate::primitive;
 use crate::record::IS_INSTANCE;
 use crate::search::{Enter, Level, Search};
+use crate::{moving, primitive};
 use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::pad_far;
 
@@ -104,19 +104,11 @@ impl Walker {
     #[inline(always)]
     pub unsafe fn step_node<B: Backend, const ANY: bool>(&mut self, search: &mut Search<ANY>, ground: &Ground<ANY>) {
         search.counters.nodes_visited += 1;
-        // SAFETY: the tree's places lead to what they say; the stack has room for a node on each level.
+        // SAFETY: the tree's places lead to what they say.
         unsafe {
             let node: *const Node = arena::get(ground.lines, self.place.line());
             let keys = B::boxes::<ANY>(node, &self.lanes, self.limit);
-            let (least, child) = B::least(&keys);
-            if least == NO_KEY {
-                return self.next::<B>(ground.lines);
-            }
-            // Written in any case, kept if there is something in it.
-            let (keys, is_empty) = B::without(&keys, child);
-            *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(Entry { keys, node: self.place });
-            self.stack.len += usize::from(!is_empty);
-            self.place = *(*node).children.get_unchecked(child);
+            self.descend::<B>(keys, ground.lines);
         }
     }
 
@@ -149,10 +141,52 @@ impl Walker {
         }
     }
 
-    /// Test what is in the leaf where the ray is, and go on.
+    /// [`Walker::step_node`] where boxes move: on the node as it is at the ray's moment.
     ///
     /// # Safety
-    /// The CPU has what `B` needs; `place` is a leaf of the ground's tree.
+    /// As [`Walker::step_node`], of a node of what moves.
+    #[inline(never)]
+    unsafe fn step_motion<B: Backend, const ANY: bool>(
+        &mut self,
+        ray: &PreparedRay,
+        search: &mut Search<ANY>,
+        ground: &Ground<ANY>,
+    ) {
+        search.counters.nodes_visited += 1;
+        let moment = moving::moment(ray.clipped.time, ground.level.shutter);
+        // SAFETY: as in `step_node`; a node of what moves begins with a node.
+        unsafe {
+            let node = &*arena::get::<MotionNode>(ground.lines, self.place.line());
+            let keys = B::boxes::<ANY>(&node.at(moment), &self.lanes, self.limit);
+            self.descend::<B>(keys, ground.lines);
+        }
+    }
+
+    /// Go to the nearest of these children of the node where the ray is, or back up.
+    ///
+    /// # Safety
+    /// As [`Walker::step_node`]; the keys are those of the node at `place`.
+    #[inline(always)]
+    unsafe fn descend<B: Backend>(&mut self, keys: Keys, lines: *const Line) {
+        // SAFETY: the tree's places lead to what they say; the stack has room for a node on each level.
+        unsafe {
+            let (least, child) = B::least(&keys);
+            if least == NO_KEY {
+                return self.next::<B>(lines);
+            }
+            // Written in any case, kept if there is something in it.
+            let (keys, is_empty) = B::without(&keys, child);
+            *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(Entry { keys, node: self.place });
+            self.stack.len += usize::from(!is_empty);
+            let node: *const Node = arena::get(lines, self.place.line());
+            self.place = *(*node).children.get_unchecked(child);
+        }
+    }
+
+    /// Test what is in the leaf where the ray is, and go on; or step on a node of what moves.
+    ///
+    /// # Safety
+    /// The CPU has what `B` needs; `place` is a leaf of the ground's tree, or a node of what moves.
     #[inline(always)]
     pub unsafe fn step_leaf<B: Backend, const ANY: bool>(
         &mut self,
@@ -160,6 +194,10 @@ impl Walker {
         search: &mut Search<ANY>,
         ground: &Ground<ANY>,
     ) {
+        if self.place.is_motion() {
+            // SAFETY: the caller promises as much.
+            return unsafe { self.step_motion::<B, ANY>(ray, search, ground) };
+        }
         // SAFETY: the caller promises as much.
         unsafe {
             test_leaf::<B, ANY>(self.place, ray, search, ground);

@@ -105,7 +105,7 @@ pub fn ray(r: &mut Random, corners: &[Vec3]) -> Ray {
 #[test]
 fn the_tree_equals_brute_force_on_scenes_of_everything() {
     let (mut rays_cast, mut hits) = (0, 0);
-    for seed in 0..120 {
+    for seed in 0..60 {
         let r = &mut Random::new(seed);
         let n = [1, 3, 9, 40, 300][seed as usize % 5];
         let (scene, corners) = scene(r, n);
@@ -129,7 +129,7 @@ fn the_tree_equals_brute_force_at_every_scale() {
         let balls = (0..20).map(|_| Sphere { center: r.cube() * scale, radius: r.unit() * 0.2 * scale }).collect();
         let scene = crate::common::world(vec![triangles(&soup), Shape::Spheres(Arc::new(balls))]);
         let rays: Vec<Ray> =
-            (0..3000).map(|_| ray(r, &corners)).map(|q| Ray { origin: q.origin * scale, ..q }).collect();
+            (0..1200).map(|_| ray(r, &corners)).map(|q| Ray { origin: q.origin * scale, ..q }).collect();
         assert_agreement(&scene, &rays);
     }
 }
@@ -186,7 +186,7 @@ pub fn scene_of_everything(r: &mut Random, n: usize) -> (SceneGeometry, Vec<Vec3
 #[test]
 fn every_structure_equals_brute_force_on_every_shape() {
     let (mut rays_cast, mut hits) = (0, 0);
-    for seed in 0..60 {
+    for seed in 0..30 {
         let r = &mut Random::new(500 + seed);
         let (scene, corners) = scene_of_everything(r, [2, 9, 40][seed as usize % 3]);
         let rays: Vec<Ray> = (0..500).map(|_| ray(r, &corners)).collect();

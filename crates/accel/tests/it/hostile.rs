@@ -1,4 +1,4 @@
-//! A million rays that mean harm to structures of cells and spheres: that graze triangles beside their edges, run within
+//! Rays that mean harm to structures of cells and spheres: that graze triangles beside their edges, run within
 //! the planes where cells end, come from near and far, and begin and end anywhere.
 
 use crate::common::{Random, bits, build, closest, triangles, world};
@@ -6,7 +6,7 @@ use kirkas_accel::{Accel, AccelKind, SceneGeometry, Shape, Sphere};
 use kirkas_geometry::{Ray, Vec3};
 use std::sync::Arc;
 
-const RAYS: usize = 60_000;
+const RAYS: usize = 10_000;
 
 /// Slivers, copies, axis-aligned ones and others; `size` of most, in a scene of size 2 around `center`.
 fn soup(r: &mut Random, n: usize, size: f32, center: Vec3) -> Vec<[Vec3; 3]> {

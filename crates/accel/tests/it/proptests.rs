@@ -36,7 +36,7 @@ fn corners() -> impl Strategy<Value = [Vec3; 3]> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 3000, failure_persistence: None, rng_seed: RngSeed::Fixed(6837), ..ProptestConfig::default()
+        cases: 1200, failure_persistence: None, rng_seed: RngSeed::Fixed(6837), ..ProptestConfig::default()
     })]
 
     #[test]

@@ -135,7 +135,7 @@ fn a_batch_answers_as_single_rays_do() {
 fn the_tree_does_not_depend_on_the_executor() {
     let r = &mut Random::new(9);
     let mut soup = Vec::new();
-    for _ in 0..150_000 {
+    for _ in 0..70_000 {
         let p = r.cube();
         soup.push([p, p + r.cube() * 0.01, p + r.cube() * 0.01]);
     }
@@ -145,7 +145,7 @@ fn the_tree_does_not_depend_on_the_executor() {
         let threaded = Accel::build(kind, scene.clone(), &Threads).unwrap();
         threaded.validate().unwrap();
         assert_eq!(serial.statistics(), threaded.statistics());
-        for _ in 0..20_000 {
+        for _ in 0..2_000 {
             let ray = Ray::new(r.cube() * 2.0, r.cube());
             let (mut a, mut b) = (Counters::default(), Counters::default());
             let (x, y) =
