@@ -41,8 +41,8 @@ impl Backend for Avx2 {
 
     #[inline(always)]
     unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
-        // SAFETY: the caller promises AVX2 and FMA.
-        unsafe { crossing(corners, ray, weights) }
+        // Compiled for AVX2 where it is inlined.
+        triangle::crossing(corners, ray, weights)
     }
 
     #[inline(always)]
@@ -65,7 +65,7 @@ unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) ->
     // SAFETY: the node begins with 6 rows of 8 planes.
     let slab = |k: usize| unsafe {
         let inverse = _mm256_set1_ps(ray.inverse[k]);
-        let first = 16 * k + 8 * ray.is_negative[k] as usize;
+        let first = 8 * ray.enter_row[k] as usize;
         let enter = _mm256_load_ps(planes.add(first));
         let leave = _mm256_load_ps(planes.add(first ^ 8));
         (
@@ -191,12 +191,6 @@ unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUnini
         unsafe { _mm256_store_ps(rows.add(8 * edge), w) };
     }
     passing
-}
-
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
-    triangle::crossing(corners, ray, weights)
 }
 
 #[inline]

@@ -89,7 +89,7 @@ impl Backend for Portable {
         let mut near = [ray.t_min; WIDTH];
         let mut far = [f32::INFINITY; WIDTH];
         for k in 0..3 {
-            let first = 2 * k + ray.is_negative[k] as usize;
+            let first = ray.enter_row[k] as usize;
             let (enter, leave) = (&node.planes[first], &node.planes[first ^ 1]);
             for c in 0..WIDTH {
                 let e = enter[c] * ray.inverse[k] + ray.enter[k];

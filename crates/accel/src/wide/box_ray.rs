@@ -11,60 +11,68 @@ use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub(super) struct BoxRay {
-    pub inverse: [f32; 3],
+    /// The last lane of these is idle.
+    pub inverse: [f32; 4],
     /// Added to the distances of the planes through which it enters.
-    pub enter: [f32; 3],
+    pub enter: [f32; 4],
     /// Added to the distances of the planes through which it leaves.
-    pub leave: [f32; 3],
+    pub leave: [f32; 4],
+    /// The rows of a node's planes through which it enters.
+    pub enter_row: [u32; 3],
     pub t_min: f32,
-    /// 1 where the direction is negative, so that the high plane is met first.
-    pub is_negative: [u32; 3],
 }
 
 /// The roundings of both tests: 2 and the 21 of the padding in `Bounds3::intersect`, 4 here; and some more.
 const SLACK: f32 = 32.0 * UNIT_ROUNDOFF;
-
 /// How far it takes a ray that does not move along an axis to cross what boxes and origin span there.
 const FAR: f32 = 0.25 * f32::MAX;
+/// Distances beyond this say nothing, since they might overflow.
+const SOUND: f32 = 0.5 * f32::MAX;
 
 impl BoxRay {
     /// For boxes of which no coordinate is larger than `reach`.
     #[inline(always)]
     pub fn new(ray: &PreparedRay, reach: f32) -> Self {
-        let origin = ray.clipped.origin.to_array();
-        let mut b = BoxRay {
-            inverse: ray.inverse,
-            enter: [0.0; 3],
-            leave: [0.0; 3],
-            t_min: ray.clipped.t_min,
-            is_negative: ray.is_negative,
-        };
-        let size = [0, 1, 2].map(|k| reach + origin[k].abs());
-        // Every box lies before this, as far as an axis along which the ray moves can tell.
+        let o = ray.clipped.origin;
+        let (origin, i) = ([o.x, o.y, o.z, 0.0], ray.inverse);
+        let inverse = [i[0], i[1], i[2], 0.0];
+        let each = |f: &dyn Fn(usize) -> f32| [f(0), f(1), f(2), f(3)];
+        // Every box lies before this.
+        let farthest = each(&|k| (reach + origin[k].abs()) * inverse[k].abs());
+        let enter = each(&|k| -(origin[k] * inverse[k]) - SLACK * farthest[k]);
+        let leave = each(&|k| -(origin[k] * inverse[k]) + SLACK * farthest[k]);
+        let enter_row = [ray.is_negative[0], 2 + ray.is_negative[1], 4 + ray.is_negative[2]];
+        let mut b = BoxRay { inverse, enter, leave, enter_row, t_min: ray.clipped.t_min };
+        if !(farthest[0] < SOUND && farthest[1] < SOUND && farthest[2] < SOUND) {
+            b.mend(origin, reach);
+        }
+        b
+    }
+
+    /// For a ray of which some distances overflow, because it does not move along an axis or is very far away.
+    #[cold]
+    fn mend(&mut self, origin: [f32; 4], reach: f32) {
+        let size = [0, 1, 2].map(|k: usize| reach + origin[k].abs());
         let mut farthest = f32::INFINITY;
         for k in 0..3 {
-            let reached = size[k] * ray.inverse[k].abs();
+            let reached = size[k] * self.inverse[k].abs();
             farthest = if reached < farthest { reached } else { farthest };
         }
         for k in 0..3 {
-            let mut inverse = ray.inverse[k];
-            let mut limit = 0.5 * f32::MAX;
-            let mut slack = SLACK * size[k] * inverse.abs();
-            if !inverse.is_finite() {
-                // The ray stays where it is along this axis: what it is not within (by the slack, which it takes 1e32 to cross) lies
-                // too far away.
-                inverse = (FAR / size[k]).min(f32::MAX).copysign(inverse);
-                slack = SLACK * FAR;
-                limit = if farthest < 1e31 { limit } else { 0.0 };
+            let inverse = self.inverse[k];
+            if size[k] * inverse.abs() < SOUND {
+                continue;
             }
-            let offset = -(origin[k] * inverse);
-            // Where distances overflow they say nothing.
-            let is_sound = size[k] * inverse.abs() < limit;
-            b.inverse[k] = inverse;
-            b.enter[k] = if is_sound { offset - slack } else { f32::NEG_INFINITY };
-            b.leave[k] = if is_sound { offset + slack } else { f32::INFINITY };
+            if inverse.is_finite() || farthest >= 1e31 {
+                (self.enter[k], self.leave[k]) = (f32::NEG_INFINITY, f32::INFINITY);
+            } else {
+                // The ray stays where it is along this axis: what it is not within, by the slack, which it takes 1e32 to
+                // cross, lies too far away.
+                let inverse = (FAR / size[k]).min(f32::MAX).copysign(inverse);
+                let offset = -(origin[k] * inverse);
+                (self.inverse[k], self.enter[k], self.leave[k]) = (inverse, offset - SLACK * FAR, offset + SLACK * FAR);
+            }
         }
-        b
     }
 }
 

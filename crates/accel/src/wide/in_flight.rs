@@ -76,25 +76,32 @@ struct Slot<'a, const ANY: bool> {
     search: Search<'a, ANY>,
 }
 
-/// Slots whose rays are at a node, and at a leaf.
+/// Slots, by where their rays are.
 struct Lists {
-    slots: [[u8; IN_FLIGHT]; 2],
-    len: [usize; 2],
+    nodes: [u32; IN_FLIGHT],
+    leaves: [u32; IN_FLIGHT],
+    ended: [u32; IN_FLIGHT],
 }
 
-const AT_NODE: usize = 0;
-const AT_LEAF: usize = 1;
+/// How many are in each of the [`Lists`].
+#[derive(Clone, Copy)]
+struct Counts {
+    nodes: usize,
+    leaves: usize,
+    ended: usize,
+}
 
 impl Lists {
-    /// Put a slot where its ray's place says, or among the free ones: 1 if so. Without a branch on the place.
+    /// Put a slot where its ray's place says: written into all lists, counted in one, without a branch.
     #[inline(always)]
-    fn sort(&mut self, place: Place, slot: u8, free: &mut [u8; IN_FLIGHT], free_count: usize) -> usize {
-        let (is_end, list) = (usize::from(place.is_end()), usize::from(!place.is_node()));
-        let len = self.len[list];
-        self.slots[list][len & (IN_FLIGHT - 1)] = slot;
-        self.len[list] = len + 1 - is_end;
-        free[free_count & (IN_FLIGHT - 1)] = slot;
-        is_end
+    fn sort(&mut self, place: Place, slot: u32, n: &mut Counts) {
+        let (is_node, is_end) = (usize::from(place.is_node()), usize::from(place.is_end()));
+        self.nodes[n.nodes & (IN_FLIGHT - 1)] = slot;
+        self.leaves[n.leaves & (IN_FLIGHT - 1)] = slot;
+        self.ended[n.ended & (IN_FLIGHT - 1)] = slot;
+        n.nodes += is_node;
+        n.ended += is_end;
+        n.leaves += 1 - is_node - is_end;
     }
 }
 
@@ -111,12 +118,15 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
 ) {
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
     let mut slots: [MaybeUninit<Slot<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
-    let mut lists = Lists { slots: [[0; IN_FLIGHT]; 2], len: [0; 2] };
-    // Finished or not, a slot is free at first, and again when its ray is through.
-    let mut free: [u8; IN_FLIGHT] = core::array::from_fn(|i| i as u8);
-    let mut free_count = IN_FLIGHT;
+    let mut lists = Lists { nodes: [0; IN_FLIGHT], leaves: [0; IN_FLIGHT], ended: [0; IN_FLIGHT] };
+    // At first no slot has a ray, which is as if all had ended.
+    let mut n = Counts { nodes: 0, leaves: 0, ended: IN_FLIGHT };
+    lists.ended = core::array::from_fn(|i| i as u32);
     loop {
-        for &number in &free[..free_count] {
+        // Who is through makes room.
+        let ended = lists.ended;
+        let count = core::mem::take(&mut n.ended);
+        for &number in &ended[..count] {
             let slot = &mut slots[number as usize];
             for index in waiting.by_ref() {
                 let Some(ray) = PreparedRay::new(&batch.rays[index]) else {
@@ -138,37 +148,36 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
                     done(index, slot.search.best);
                     continue;
                 }
-                lists.sort(slot.walker.place, number, &mut [0; IN_FLIGHT], 0);
+                lists.sort(slot.walker.place, number, &mut n);
                 break;
             }
         }
-        let which = usize::from(lists.len[AT_LEAF] > lists.len[AT_NODE]);
-        let count = lists.len[which];
-        if count == 0 {
+        if n.nodes + n.leaves == 0 {
             return;
         }
-        let round = lists.slots[which];
-        lists.len[which] = 0;
-        free_count = 0;
-        // SAFETY (both loops): slots in the lists were filled, and a list holds rays at places of its type; the caller
-        // promises the CPU.
-        if which == AT_NODE {
-            for &number in &round[..count] {
-                let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
-                unsafe { slot.walker.step_node::<B, ANY>(&mut slot.search, &ground) };
-                prefetch(&ground, slot.walker.place);
-                free_count += lists.sort(slot.walker.place, number, &mut free, free_count);
+        // SAFETY (all below): slots in the lists were filled, and a list holds rays at places of its type; the caller promises
+        // the CPU. What stays in the list is written over what was already read.
+        if n.nodes >= n.leaves {
+            let count = core::mem::take(&mut n.nodes);
+            counters.nodes_visited += count as u64;
+            for i in 0..count {
+                let number = lists.nodes[i];
+                let walker = unsafe { &mut slots.get_unchecked_mut(number as usize).assume_init_mut().walker };
+                unsafe { walker.step_node::<B, ANY>(&ground) };
+                prefetch(&ground, walker.place);
+                lists.sort(walker.place, number, &mut n);
             }
         } else {
-            for &number in &round[..count] {
+            let count = core::mem::take(&mut n.leaves);
+            for i in 0..count {
+                let number = lists.leaves[i];
                 let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
                 unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
                 prefetch(&ground, slot.walker.place);
-                free_count += lists.sort(slot.walker.place, number, &mut free, free_count);
+                lists.sort(slot.walker.place, number, &mut n);
             }
         }
-        for &number in &free[..free_count] {
-            // SAFETY: filled.
+        for &number in &lists.ended[..n.ended] {
             let search = unsafe { &slots[number as usize].assume_init_ref().search };
             *counters += search.counters;
             done(search.ray_index, search.best);

@@ -41,14 +41,17 @@ unsafe fn walk_avx2<const ANY: bool>(ground: &Ground<ANY>, ray: &PreparedRay, se
 unsafe fn walk<B: Backend, const ANY: bool>(ground: &Ground<ANY>, ray: &PreparedRay, search: &mut Search<ANY>) {
     let mut slot = MaybeUninit::uninit();
     let walker = Walker::start(&mut slot, ray, search, ground);
+    let mut nodes_visited = 0;
     while !walker.place.is_end() {
         // SAFETY: the caller promises the CPU; places are tested before they are stepped on.
         unsafe {
             if walker.place.is_node() {
-                walker.step_node::<B, ANY>(search, ground);
+                walker.step_node::<B, ANY>(ground);
+                nodes_visited += 1;
             } else {
                 walker.step_leaf::<B, ANY>(ray, search, ground);
             }
         }
     }
+    search.counters.nodes_visited += nodes_visited;
 }

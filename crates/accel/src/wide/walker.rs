@@ -22,13 +22,15 @@ struct Entry {
 }
 
 /// The nodes on the way down to where a ray is. Each visited node leaves at most one entry, so the tree's depth bounds it.
+#[repr(C)]
 struct Stack {
-    entries: [MaybeUninit<Entry>; MAX_LEVELS + 1],
     /// Entries in use; the first is a guard that is never culled and leads to the end.
     len: usize,
+    entries: [MaybeUninit<Entry>; MAX_LEVELS + 1],
 }
 
-/// Where a ray is.
+/// Where a ray is. What each step touches comes first.
+#[repr(C, align(64))]
 pub(super) struct Walker {
     lanes: BoxRay,
     /// Boxes that are entered after this are culled.
@@ -102,9 +104,8 @@ impl Walker {
     /// # Safety
     /// The CPU has what `B` needs; `place` is a node of the ground's tree.
     #[inline(always)]
-    pub unsafe fn step_node<B: Backend, const ANY: bool>(&mut self, search: &mut Search<ANY>, ground: &Ground<ANY>) {
-        search.counters.nodes_visited += 1;
-        // SAFETY: the tree's places lead to what they say.
+    pub unsafe fn step_node<B: Backend, const ANY: bool>(&mut self, ground: &Ground<ANY>) {
+        // SAFETY: the tree's places lead to what they say; the stack has room for a node on each level.
         unsafe {
             let node: *const Node = arena::get(ground.lines, self.place.line());
             let keys = B::boxes::<ANY>(node, &self.lanes, self.limit);
