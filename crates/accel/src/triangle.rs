@@ -107,10 +107,19 @@ fn later(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32
 #[inline(always)]
 pub(crate) fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
     let t = distance(corners, ray)?;
-    let total = weights[0] + weights[1] + weights[2];
-    let (u, v) =
-        if total.is_normal() { (weights[1] / total, weights[2] / total) } else { decide(&sheared(corners, ray))? };
+    let (u, v) = barycentric(weights, || (*corners, *ray))?;
     Some((t, u, v))
+}
+
+/// Weights of corners 1 and 2, whose sum with that of corner 0 is 1.
+#[inline(always)]
+pub(crate) fn barycentric(weights: [f32; 3], of: impl FnOnce() -> (Corners, PreparedRay)) -> Option<(f32, f32)> {
+    let total = weights[0] + weights[1] + weights[2];
+    if total.is_normal() {
+        return Some((weights[1] / total, weights[2] / total));
+    }
+    let (corners, ray) = of();
+    decide(&sheared(&corners, &ray))
 }
 
 /// Weights of corners 1 and 2 where f32 overflows or underflows: in f64 the signs are exact.
@@ -183,4 +192,4 @@ fn within((low, high): &(Lanes<f32>, Lanes<f32>), ray: &PreparedRay) -> Option<(
 }
 
 /// Bound on the error of `height`: 8 roundings in f64.
-const HEIGHT_ERROR: f64 = 8.0 * f64::EPSILON * 0.5;
+pub(crate) const HEIGHT_ERROR: f64 = 8.0 * f64::EPSILON * 0.5;

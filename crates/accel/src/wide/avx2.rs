@@ -6,10 +6,12 @@ use super::box_ray::BoxRay;
 use super::node::{Block, Node};
 use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
-use crate::triangle::{self, Corners};
+use crate::prepared_ray::clamp;
+use crate::triangle::{self, HEIGHT_ERROR};
 use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
-use kirkas_geometry::bounds::FAR_PAD;
+use kirkas_geometry::bounds::{FAR_PAD, pad_far};
+use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 /// Code for CPUs with AVX2 and FMA.
 pub(super) struct Avx2;
@@ -40,9 +42,17 @@ impl Backend for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
-        // Compiled for AVX2 where it is inlined.
-        triangle::crossing(corners, ray, weights)
+    unsafe fn crossing(
+        block: *const Block,
+        lane: usize,
+        ray: &PreparedRay,
+        weights: &Weights,
+    ) -> Option<(f32, f32, f32)> {
+        // SAFETY: the caller promises AVX2 and FMA, a valid block and a lane of it.
+        let t = unsafe { distance(block, lane, ray) }?;
+        let weights = weights.of(lane);
+        let (u, v) = triangle::barycentric(weights, || (unsafe { (*block).triangle(lane) }, *ray))?;
+        Some((t, u, v))
     }
 
     #[inline(always)]
@@ -191,6 +201,81 @@ unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUnini
         unsafe { _mm256_store_ps(rows.add(8 * edge), w) };
     }
     passing
+}
+
+/// [`triangle::distance`], operation for operation. The fourth lanes are idle.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn distance(block: *const Block, lane: usize, ray: &PreparedRay) -> Option<f32> {
+    // SAFETY: the block begins with 9 rows of 8 numbers.
+    let corner = |c: usize| unsafe {
+        let at = block.cast::<f32>().add(24 * c + lane);
+        _mm_setr_ps(*at, *at.add(8), *at.add(16), 0.0)
+    };
+    // SAFETY: 12 bytes of the vector and 4 of what comes after it in the ray; the blend drops those.
+    let vector = |v: *const f32| unsafe { _mm_blend_ps::<0b1000>(_mm_loadu_ps(v), _mm_setzero_ps()) };
+    let (p, q, r) = (corner(0), corner(1), corner(2));
+    let origin = vector((&raw const ray.clipped.origin).cast());
+    let direction = vector((&raw const ray.clipped.direction).cast());
+
+    // The plane, in f64.
+    let to_plane = _mm256_sub_pd(_mm256_cvtps_pd(p), _mm256_cvtps_pd(origin));
+    let e1 = _mm256_sub_pd(_mm256_cvtps_pd(q), _mm256_cvtps_pd(p));
+    let e2 = _mm256_sub_pd(_mm256_cvtps_pd(r), _mm256_cvtps_pd(p));
+    let (yzx, zxy) = (_mm256_permute4x64_pd::<0b11_00_10_01>, _mm256_permute4x64_pd::<0b11_01_00_10>);
+    let normal = _mm256_sub_pd(_mm256_mul_pd(yzx(e1), zxy(e2)), _mm256_mul_pd(yzx(e2), zxy(e1)));
+    let (height, speed) = sums(_mm256_mul_pd(normal, to_plane), _mm256_mul_pd(normal, _mm256_cvtps_pd(direction)));
+    let t = height / speed;
+    if !(t > f64::from(ray.t_min) && t < f64::from(ray.t_max)) {
+        return None;
+    }
+    let size = |v: __m256d| _mm256_andnot_pd(_mm256_set1_pd(-0.0), v);
+    let (sum_to_plane, sum_e1) = sums(size(to_plane), size(e1));
+    let (sum_e2, _) = sums(size(e2), size(e2));
+    if height.abs() <= HEIGHT_ERROR * sum_to_plane * sum_e1 * sum_e2 {
+        return None;
+    }
+
+    // The bounds.
+    let low = _mm_min_ps(_mm_min_ps(p, q), r);
+    let high = _mm_max_ps(_mm_max_ps(p, q), r);
+    let span = _mm_sub_ps(high, low);
+    let size = _mm_max_ss(_mm_max_ss(span, _mm_movehdup_ps(span)), _mm_movehl_ps(span, span));
+    let grow = _mm_mul_ps(_mm_broadcastss_ps(size), _mm_set1_ps(8.0 * UNIT_ROUNDOFF));
+    let more = |x: __m128| {
+        let x = _mm_andnot_ps(_mm_set1_ps(-0.0), x);
+        _mm_add_ps(grow, _mm_mul_ps(x, _mm_set1_ps(2.0 * UNIT_ROUNDOFF)))
+    };
+    let (low, high) = (_mm_sub_ps(low, more(low)), _mm_add_ps(high, more(high)));
+
+    // When the ray is within them.
+    let inverse = vector(ray.inverse.as_ptr());
+    let to_low = _mm_mul_ps(_mm_sub_ps(low, origin), inverse);
+    let to_high = _mm_mul_ps(_mm_sub_ps(high, origin), inverse);
+    let (enter, leave) = (_mm_blendv_ps(to_low, to_high, inverse), _mm_blendv_ps(to_high, to_low, inverse));
+    let (y, z) = (_mm_movehdup_ps, |v: __m128| _mm_movehl_ps(v, v));
+    // NaN, a ray within a face, is always the first operand, and so says nothing.
+    let near = _mm_max_ss(enter, _mm_set_ss(ray.clipped.t_min));
+    let near = _mm_max_ss(z(enter), _mm_max_ss(y(enter), near));
+    let far = _mm_min_ss(leave, _mm_set_ss(f32::INFINITY));
+    let far = _mm_min_ss(z(leave), _mm_min_ss(y(leave), far));
+    let (near, far) = (_mm_cvtss_f32(near), pad_far(_mm_cvtss_f32(far)));
+    let far = if ray.clipped.t_max < far { ray.clipped.t_max } else { far };
+    if !(near <= far) {
+        return None;
+    }
+    let t = clamp(t as f32, (near, far));
+    ray.admits(t).then_some(t)
+}
+
+/// x + y + z of both.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn sums(a: __m256d, b: __m256d) -> (f64, f64) {
+    let (x, y) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    let sum = _mm_add_pd(_mm256_castpd256_pd128(x), _mm256_castpd256_pd128(y));
+    let sum = _mm_add_pd(sum, _mm256_extractf128_pd::<1>(x));
+    (_mm_cvtsd_f64(sum), _mm_cvtsd_f64(_mm_unpackhi_pd(sum, sum)))
 }
 
 #[inline]

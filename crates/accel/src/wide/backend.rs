@@ -4,7 +4,7 @@ use super::box_ray::BoxRay;
 use super::node::{Block, Node, WIDTH};
 use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
-use crate::triangle::{self, Corners};
+use crate::triangle;
 use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::pad_far;
 
@@ -30,6 +30,14 @@ pub(super) fn key(distance: f32) -> u16 {
 /// The values of the edges' functions: `[edge][triangle]`. Only those of triangles that pass mean anything.
 #[repr(C, align(32))]
 pub(super) struct Weights(pub [[f32; WIDTH]; 3]);
+
+impl Weights {
+    /// Those of one triangle.
+    #[inline(always)]
+    pub fn of(&self, lane: usize) -> [f32; 3] {
+        [self.0[0][lane & 7], self.0[1][lane & 7], self.0[2][lane & 7]]
+    }
+}
 
 /// The arithmetic of a step.
 pub(super) trait Backend {
@@ -59,11 +67,16 @@ pub(super) trait Backend {
     /// The CPU has what the backend needs; `block` is valid.
     unsafe fn edges(block: *const Block, ray: &PreparedRay, weights: &mut MaybeUninit<Weights>) -> u32;
 
-    /// [`triangle::crossing`]
+    /// [`triangle::crossing`] of one triangle.
     ///
     /// # Safety
-    /// The CPU has what the backend needs.
-    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)>;
+    /// The CPU has what the backend needs; `block` is valid, and `lane` below 8.
+    unsafe fn crossing(
+        block: *const Block,
+        lane: usize,
+        ray: &PreparedRay,
+        weights: &Weights,
+    ) -> Option<(f32, f32, f32)>;
 
     /// The least key, and the first place where it is.
     ///
@@ -176,8 +189,15 @@ impl Backend for Portable {
     }
 
     #[inline(always)]
-    unsafe fn crossing(corners: &Corners, ray: &PreparedRay, weights: [f32; 3]) -> Option<(f32, f32, f32)> {
-        triangle::crossing(corners, ray, weights)
+    unsafe fn crossing(
+        block: *const Block,
+        lane: usize,
+        ray: &PreparedRay,
+        weights: &Weights,
+    ) -> Option<(f32, f32, f32)> {
+        // SAFETY: the caller promises that the block is valid.
+        let corners = unsafe { (*block).triangle(lane) };
+        triangle::crossing(&corners, ray, weights.of(lane))
     }
 
     #[inline(always)]

@@ -237,10 +237,7 @@ pub unsafe fn test_leaf<B: Backend, const ANY: bool>(
         while passing != 0 {
             let lane = passing.trailing_zeros() as usize & 7;
             passing &= passing - 1;
-            let corners = (*block).triangle(lane);
-            let rows = &(*weights.as_ptr()).0;
-            let weights = [rows[0][lane], rows[1][lane], rows[2][lane]];
-            if let Some(crossing) = B::crossing(&corners, ray, weights) {
+            if let Some(crossing) = B::crossing(block, lane, ray, weights.assume_init_ref()) {
                 let (geometry, index) = ground.tree.numbers.ids((&(*block).numbers)[lane]);
                 search.offer(ground.level, geometry, index, crossing);
             }
