@@ -1,5 +1,6 @@
 //! A ray with what every test against it needs, computed once.
 
+use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::safe_inverse;
 use kirkas_geometry::{Ray, Vec3};
 
@@ -35,11 +36,19 @@ impl PreparedRay {
     /// A ray whose hits lie within the open interval `t`, clamped into the interval that `clipped` carries.
     #[inline]
     pub(crate) fn clipped(clipped: Ray, t: (f32, f32)) -> Option<Self> {
+        let mut place = MaybeUninit::uninit();
+        // SAFETY: written when that says so.
+        Self::prepare(&mut place, &clipped, t).then(|| unsafe { place.assume_init() })
+    }
+
+    /// [`PreparedRay::clipped`] where it is to stay; false when nothing was written. Copying what was just written would wait for it.
+    #[inline(always)]
+    pub(crate) fn prepare(place: &mut MaybeUninit<Self>, clipped: &Ray, t: (f32, f32)) -> bool {
         let (o, d) = (clipped.origin.to_array(), clipped.direction.to_array());
         let [x, y, z] = d.map(f32::abs);
         let usable = clipped.origin.is_finite() && clipped.direction.is_finite() && x + y + z != 0.0 && t.0 < t.1;
         if !usable {
-            return None;
+            return false;
         }
         // Without branches, since nothing is known of the next ray: y or z, and then x if it beats that.
         let last = if y > z { 1 } else { 2 };
@@ -47,17 +56,20 @@ impl PreparedRay {
         let axes: [u32; 3] = AXES[last];
         let [u, v, w] = axes.map(|k| k as usize & 3);
         let (o4, d4) = ([o[0], o[1], o[2], 0.0], [d[0], d[1], d[2], 0.0]);
-        let inverse = safe_inverse(Vec3::from_array(d)).to_array();
-        Some(PreparedRay {
-            clipped,
-            t_min: t.0,
-            t_max: t.1,
-            inverse,
-            is_negative: inverse.map(|i| i.to_bits() >> 31),
-            axes,
-            sheared_origin: [o4[u], o4[v], o4[w]],
-            shear: [d4[u] / d4[w], d4[v] / d4[w]],
-        })
+        let inverse = safe_inverse(clipped.direction).to_array();
+        let p = place.as_mut_ptr();
+        // SAFETY: every field is written.
+        unsafe {
+            (&raw mut (*p).clipped).write(*clipped);
+            (&raw mut (*p).t_min).write(t.0);
+            (&raw mut (*p).t_max).write(t.1);
+            (&raw mut (*p).inverse).write(inverse);
+            (&raw mut (*p).is_negative).write(inverse.map(|i| i.to_bits() >> 31));
+            (&raw mut (*p).axes).write(axes);
+            (&raw mut (*p).sheared_origin).write([o4[u], o4[v], o4[w]]);
+            (&raw mut (*p).shear).write([d4[u] / d4[w], d4[v] / d4[w]]);
+        }
+        true
     }
 
     /// One over the direction.

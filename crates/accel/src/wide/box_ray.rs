@@ -5,6 +5,7 @@
 //! where a ray enters and raised where it leaves by more than all roundings of both tests together.
 
 use crate::prepared_ray::PreparedRay;
+use core::mem::MaybeUninit;
 use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 /// A ray as the box test sees it.
@@ -30,9 +31,9 @@ const FAR: f32 = 0.25 * f32::MAX;
 const SOUND: f32 = 0.5 * f32::MAX;
 
 impl BoxRay {
-    /// For boxes of which no coordinate is larger than `reach`.
+    /// For boxes of which no coordinate is larger than `reach`. Written where it is to stay.
     #[inline(always)]
-    pub fn new(ray: &PreparedRay, reach: f32) -> Self {
+    pub fn prepare(place: &mut MaybeUninit<Self>, ray: &PreparedRay, reach: f32) {
         let o = ray.clipped.origin;
         let (origin, i) = ([o.x, o.y, o.z, 0.0], ray.inverse);
         let inverse = [i[0], i[1], i[2], 0.0];
@@ -42,11 +43,10 @@ impl BoxRay {
         let enter = each(&|k| -(origin[k] * inverse[k]) - SLACK * farthest[k]);
         let leave = each(&|k| -(origin[k] * inverse[k]) + SLACK * farthest[k]);
         let enter_row = [ray.is_negative[0], 2 + ray.is_negative[1], 4 + ray.is_negative[2]];
-        let mut b = BoxRay { inverse, enter, leave, enter_row, t_min: ray.clipped.t_min };
+        let b = place.write(BoxRay { inverse, enter, leave, enter_row, t_min: ray.clipped.t_min });
         if !(farthest[0] < SOUND && farthest[1] < SOUND && farthest[2] < SOUND) {
             b.mend(origin, reach);
         }
-        b
     }
 
     /// For a ray of which some distances overflow, because it does not move along an axis or is very far away.
@@ -115,17 +115,19 @@ mod tests {
             let reach = b.min.abs().max(b.max.abs()).max_element();
             let mut node = Node::EMPTY;
             node.set_bounds(5, &b);
+            let mut lanes = MaybeUninit::uninit();
+            BoxRay::prepare(&mut lanes, &ray, reach);
+            // SAFETY: prepared above.
+            let lanes = unsafe { lanes.assume_init() };
             // SAFETY: portable code needs nothing, and the node is valid.
-            let keys = |limit| unsafe { Portable::boxes::<false>(&node, &BoxRay::new(&ray, reach), limit) };
+            let keys = |limit| unsafe { Portable::boxes::<false>(&node, &lanes, limit) };
             let Keys(found) = keys(near.max(0.0));
             assert!(found[5] != NO_KEY, "{ray:?} misses {b:?}");
             assert!((0..WIDTH).all(|i| i == 5 || found[i] == NO_KEY));
             #[cfg(target_arch = "x86_64")]
             if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
                 // SAFETY: detected above.
-                let Keys(found) = unsafe {
-                    super::super::avx2::Avx2::boxes::<false>(&node, &BoxRay::new(&ray, reach), near.max(0.0))
-                };
+                let Keys(found) = unsafe { super::super::avx2::Avx2::boxes::<false>(&node, &lanes, near.max(0.0)) };
                 assert!(found[5] != NO_KEY, "{ray:?} misses {b:?}");
             }
         }

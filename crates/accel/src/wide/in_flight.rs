@@ -129,16 +129,18 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         for &number in &ended[..count] {
             let slot = &mut slots[number as usize];
             for index in waiting.by_ref() {
-                let Some(ray) = PreparedRay::new(&batch.rays[index]) else {
+                let ray = &batch.rays[index];
+                let s = slot.as_mut_ptr();
+                // SAFETY: a place for a ray, still to be written.
+                let prepared = unsafe { &mut *(&raw mut (*s).ray).cast::<MaybeUninit<PreparedRay>>() };
+                if !PreparedRay::prepare(prepared, ray, (ray.t_min, ray.t_max)) {
                     counters.rays += 1;
                     done(index, None);
                     continue;
-                };
-                // SAFETY: all three parts of the slot are written before any is read.
+                }
+                // SAFETY: the ray was written, and the other parts of the slot are before any is read.
                 let slot = unsafe {
-                    let s = slot.as_mut_ptr();
-                    (&raw mut (*s).search).write(Search::new(&batch.rays[index], index, batch.query));
-                    (&raw mut (*s).ray).write(ray);
+                    (&raw mut (*s).search).write(Search::new(ray, index, batch.query));
                     let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
                     Walker::start(walker, &(*s).ray, &mut (*s).search, &ground);
                     &mut *s

@@ -72,7 +72,7 @@ impl Walker {
         guard.0[0] = 0;
         // SAFETY: every field is written but the unused entries of the stack, which may stay uninitialised.
         let w = unsafe {
-            (&raw mut (*w).lanes).write(BoxRay::new(ray, ground.tree.reach));
+            BoxRay::prepare(&mut *(&raw mut (*w).lanes).cast(), ray, ground.tree.reach);
             (&raw mut (*w).place).write(ground.tree.root);
             (&raw mut (*w).limit).write(0.0);
             (&raw mut (*w).limit_key).write(0);
