@@ -48,7 +48,8 @@ impl Tracer for Accel {
                     *hit = self.closest_hit(ray, Query::ALL, i, counters);
                 }
             }
-            Way::Packet | Way::Batch => self.closest_hits(rays, Query::ALL, &mut hits, counters),
+            Way::Batch => self.closest_hits(rays, Query::ALL, &mut hits, counters),
+            Way::Packet => self.closest_hits_coherent(rays, Query::ALL, &mut hits, counters),
         });
         let answer = |hit: Option<Hit>| hit.map_or(Answer::MISS, |h| Answer { t: h.t, primitive: h.primitive });
         (seconds, hits.into_iter().map(answer).collect())
