@@ -6,12 +6,12 @@ use crate::build::reference::{Box4, Reference};
 use crate::instance::PlacedInstance;
 use crate::record::{IS_INSTANCE, Record, all_references};
 use crate::scene_geometry::{Geometry, Shape};
-use crate::{primitive, triangle};
+use crate::{memory, primitive, triangle};
 use kirkas_geometry::Bounds3;
 use std::mem::MaybeUninit;
 
 /// References that a job makes at once.
-const CHUNK: usize = 1 << 15;
+const CHUNK: usize = 1 << 13;
 
 /// What a level holds, before a structure is built over it.
 pub(crate) struct Gathered {
@@ -25,7 +25,7 @@ pub(crate) struct Gathered {
 /// Gather the boxes of a level; what is empty is left out.
 pub(crate) fn gather(geometries: &[Geometry], instances: &[PlacedInstance], executor: &dyn Executor) -> Gathered {
     let count = geometries.iter().map(|g| g.shape.len()).sum::<usize>() + instances.len();
-    let mut references = Vec::with_capacity(count);
+    let mut references = memory::with_capacity(count);
     let mut pieces = Vec::new();
     let mut room = &mut references.spare_capacity_mut()[..count];
     let shapes = (0..).zip(geometries).map(|(i, geometry)| (i, Some(&geometry.shape), geometry.shape.len()));

@@ -177,6 +177,7 @@ mod instance;
 mod kd_tree;
 mod kind;
 mod local_ray;
+mod memory;
 pub mod moving;
 mod normal;
 mod path;

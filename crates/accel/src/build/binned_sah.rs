@@ -8,11 +8,12 @@ use super::binary::{BinaryTree, Child, MAX_DEPTH, Node};
 use super::bins::{Binning, Bins, MAX_BINS};
 use super::costs::Costs;
 use super::partition::{self, cut, partition, partition_in_chunks};
+use super::pieces::Piece;
 use super::reference::{Box4, Reference};
 use crate::Executor;
 
 /// Subtrees larger than this are handed to the executor in two halves.
-const FORK_ABOVE: usize = 1 << 15;
+const FORK_ABOVE: usize = 1 << 12;
 
 /// The tree over `references`. Nodes stand depth first, the left child after its parent.
 pub(crate) fn build(mut references: Vec<Reference>, costs: &Costs, executor: &dyn Executor) -> BinaryTree {
@@ -21,42 +22,11 @@ pub(crate) fn build(mut references: Vec<Reference>, costs: &Costs, executor: &dy
     BinaryTree { nodes, root, references }
 }
 
-/// A tree in pieces, each built on its own.
-enum Piece {
-    Whole(Vec<Node>, Child),
-    Forked { boxes: [Box4; 2], halves: Box<[Piece; 2]> },
-}
-
-impl Piece {
-    fn len(&self) -> usize {
-        match self {
-            Piece::Whole(nodes, _) => nodes.len(),
-            Piece::Forked { halves, .. } => 1 + halves[0].len() + halves[1].len(),
-        }
-    }
-
-    fn append_to(self, nodes: &mut Vec<Node>) -> Child {
-        let base = nodes.len();
-        match self {
-            Piece::Whole(own, root) => {
-                nodes.extend(own.iter().map(|n| Node { children: n.children.map(|c| c.moved(base)), ..*n }));
-                root.moved(base)
-            }
-            Piece::Forked { boxes, halves } => {
-                nodes.push(Node::new([&boxes[0].to_bounds(), &boxes[1].to_bounds()], [Child::node(0); 2]));
-                let children = halves.map(|half| half.append_to(nodes));
-                nodes[base].children = children;
-                Child::node(base)
-            }
-        }
-    }
-}
-
 /// The boxes around some references and around their centers.
 #[derive(Clone, Copy)]
-struct Around {
-    whole: Box4,
-    centers: Box4,
+pub(super) struct Around {
+    pub whole: Box4,
+    pub centers: Box4,
 }
 
 struct Split {
@@ -76,19 +46,11 @@ impl Builder<'_> {
             return (Vec::new(), None);
         }
         let around = self.around(references);
-        let piece = self.fork(references, 0, around, depth);
-        let mut nodes = Vec::with_capacity(piece.len());
-        let root = match piece {
-            Piece::Whole(own, root) => {
-                nodes = own;
-                root
-            }
-            forked => forked.append_to(&mut nodes),
-        };
+        let (nodes, root) = self.fork(references, around, depth).into_nodes(self.executor);
         (nodes, Some(root))
     }
 
-    fn around(&self, references: &[Reference]) -> Around {
+    pub fn around(&self, references: &[Reference]) -> Around {
         let Some(middle) = cut(references) else {
             let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
             return Around { whole, centers: partition::centers(references) };
@@ -98,7 +60,7 @@ impl Builder<'_> {
         Around { whole: a.whole.union(b.whole), centers: a.centers.union(b.centers) }
     }
 
-    fn bins(&self, references: &[Reference], binning: &Binning) -> Bins {
+    pub fn bins(&self, references: &[Reference], binning: &Binning) -> Bins {
         let Some(middle) = cut(references) else {
             let mut bins = Bins::EMPTY;
             bins.fill(references, binning);
@@ -117,12 +79,12 @@ impl Builder<'_> {
         [of_a, of_b].map(|of| of.expect("executors run both jobs"))
     }
 
-    fn fork(&self, references: &mut [Reference], first: usize, around: Around, depth: usize) -> Piece {
+    fn fork(&self, references: &mut [Reference], around: Around, depth: usize) -> Piece {
         if references.len() <= FORK_ABOVE {
             let mut nodes = Vec::with_capacity(references.len() / 3);
             let mut bins = Bins::EMPTY;
-            let root = self.subtree(references, first, around.whole, depth, &mut nodes, &mut bins);
-            return Piece::Whole(nodes, root);
+            let root = self.subtree(references, 0, around.whole, depth, &mut nodes, &mut bins);
+            return Piece::in_place(nodes, root, references.len());
         }
         let binning = Binning::new(&around.centers, MAX_BINS);
         let roomy = has_room(references.len(), depth);
@@ -140,11 +102,9 @@ impl Builder<'_> {
             }
         };
         let (left, right) = references.split_at_mut(left_count);
-        let halves = self.both(
-            || self.fork(left, first, arounds[0], depth + 1),
-            || self.fork(right, first + left_count, arounds[1], depth + 1),
-        );
-        Piece::Forked { boxes: arounds.map(|a| a.whole), halves: Box::new(halves) }
+        let halves = self.both(|| self.fork(left, arounds[0], depth + 1), || self.fork(right, arounds[1], depth + 1));
+        let [a, b] = arounds.map(|a| a.whole.to_bounds());
+        Piece::forked(Node::new([&a, &b], [Child::node(0); 2]), halves)
     }
 
     pub fn subtree(

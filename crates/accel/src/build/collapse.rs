@@ -3,21 +3,31 @@
 //! subtree costs when at most 1, 2, ... 7 wide children stand for it; top down, the choices are read off those costs.
 
 use super::binary::{BinaryTree, Child, MAX_LEAF, Node};
-use crate::Executor;
+use super::reference::Reference;
+use crate::{Executor, memory};
 use kirkas_geometry::Bounds3;
 
 /// Children of a wide node.
 pub(crate) const WIDTH: usize = 8;
 /// Subtrees of more nodes than this are handed to the executor in two halves.
-const FORK_ABOVE: usize = 1 << 13;
+const FORK_ABOVE: usize = 1 << 11;
 
 /// What a visit costs, per area of the box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Costs {
     /// A wide node.
     pub node: f32,
-    /// A block of up to [`MAX_LEAF`] references.
-    pub leaf: f32,
+    /// A leaf that is a block of up to [`MAX_LEAF`] references.
+    pub block: f32,
+    /// Each reference of a leaf that is a list; with 0 every leaf is priced as a block.
+    pub listed: f32,
+}
+
+impl Costs {
+    #[inline(always)]
+    fn leaf(&self, references: u32, is_list: bool) -> f32 {
+        if is_list { self.listed * references as f32 } else { self.block }
+    }
 }
 
 /// The least costs of a binary tree's nodes.
@@ -31,18 +41,64 @@ pub(crate) struct Collapse {
 struct Entry {
     /// `cost[i]`: the least cost as at most `i + 1` wide children.
     cost: [f32; WIDTH - 1],
-    /// References below, counted up to one more than a leaf holds.
-    references: u16,
-    /// As one child, a leaf serves better than a wide node.
-    is_leaf: bool,
+    /// References below; the top bits say [`IS_LEAF`] and [`IS_LIST`].
+    below: u32,
+}
+
+/// As one child, a leaf serves better than a wide node.
+const IS_LEAF: u32 = 1 << 31;
+/// As a leaf, a list.
+const IS_LIST: u32 = 1 << 30;
+
+impl Entry {
+    #[inline(always)]
+    fn references(&self) -> u32 {
+        self.below & (IS_LIST - 1)
+    }
+
+    #[inline(always)]
+    fn is_leaf(&self) -> bool {
+        self.below & IS_LEAF != 0
+    }
+}
+
+/// Which runs of references make a list; one that has a part that does, does.
+pub(crate) type IsList<'a> = &'a (dyn Fn(&[Reference]) -> bool + Sync);
+
+/// The wide children of a node.
+#[derive(Clone, Copy)]
+pub(crate) struct Children {
+    items: [(Child, Bounds3); WIDTH],
+    len: usize,
+}
+
+impl Children {
+    fn push(&mut self, child: Child, bounds: Bounds3) {
+        self.items[self.len] = (child, bounds);
+        self.len += 1;
+    }
+}
+
+impl core::ops::Deref for Children {
+    type Target = [(Child, Bounds3)];
+
+    fn deref(&self) -> &Self::Target {
+        &self.items[..self.len]
+    }
 }
 
 impl Collapse {
     /// Weigh all nodes. The result does not depend on the executor.
-    pub fn new(tree: &BinaryTree, costs: Costs, executor: &dyn Executor) -> Self {
-        let mut entries = vec![Entry::default(); tree.nodes.len()];
-        weigh_subtree(&tree.nodes, 0, &mut entries, costs, executor);
+    pub fn new(tree: &BinaryTree, costs: Costs, is_list: IsList, executor: &dyn Executor) -> Self {
+        let mut entries = memory::filled(Entry::default(), tree.nodes.len());
+        let weighing = Weighing { references: &tree.references, costs, is_list, executor };
+        weighing.subtree(&tree.nodes, 0, &mut entries);
         Collapse { entries }
+    }
+
+    /// References below a node.
+    pub fn references(&self, node: Child) -> usize {
+        self.entries[node.index()].references() as usize
     }
 
     /// Cost of the whole wide tree, times half the area of boxes; for tests to compare trees by.
@@ -58,13 +114,14 @@ impl Collapse {
 
     /// The wide children of an inner binary node, in the order of their references: each a leaf, or an inner binary node
     /// that becomes a wide one. At least 2, at most [`WIDTH`].
-    pub fn children(&self, tree: &BinaryTree, node: Child, out: &mut Vec<(Child, Bounds3)>) {
-        out.clear();
-        self.open(tree, node, WIDTH, out);
+    pub fn children(&self, tree: &BinaryTree, node: Child) -> Children {
+        let mut out = Children { items: [(Child::node(0), Bounds3::EMPTY); WIDTH], len: 0 };
+        self.open(tree, node, WIDTH, &mut out);
+        out
     }
 
     /// Add at most `count` wide children that stand for what is below `node`.
-    fn open(&self, tree: &BinaryTree, node: Child, count: usize, out: &mut Vec<(Child, Bounds3)>) {
+    fn open(&self, tree: &BinaryTree, node: Child, count: usize, out: &mut Children) {
         let node = &tree.nodes[node.index()];
         let [left, right] = node.children;
         let cost = |child: Child, count: usize| match child.is_leaf() {
@@ -80,7 +137,7 @@ impl Collapse {
         }
         for (side, child, count) in [(0, left, best.1), (1, right, count - best.1)] {
             match self.fewest(child, count) {
-                1 => out.push((self.as_one(tree, child), node.child_bounds(side))),
+                1 => out.push(self.as_one(tree, child), node.child_bounds(side)),
                 fewest => self.open(tree, child, fewest, out),
             }
         }
@@ -96,65 +153,78 @@ impl Collapse {
     }
 
     fn as_one(&self, tree: &BinaryTree, child: Child) -> Child {
-        if child.is_leaf() || !self.entries[child.index()].is_leaf {
+        if child.is_leaf() || !self.entries[child.index()].is_leaf() {
             return child;
         }
         // The runs of a subtree follow one another.
-        let count = self.entries[child.index()].references;
+        let count = self.references(child);
         let mut first = child;
         while !first.is_leaf() {
             first = tree.nodes[first.index()].children[0];
         }
-        Child::leaf(first.run().0, usize::from(count))
+        Child::leaf(first.run().0, count)
     }
 }
 
-/// Weigh the nodes of one subtree, which is all of `nodes`; the first is node `base` of the tree.
-fn weigh_subtree(nodes: &[Node], base: usize, entries: &mut [Entry], costs: Costs, executor: &dyn Executor) {
-    if nodes.len() > FORK_ABOVE {
-        let [left, right] = nodes[0].children;
-        // Depth first: the left subtree follows its parent, the right one ends with it.
-        let middle = if right.is_leaf() { nodes.len() } else { right.index() - base };
-        debug_assert!(left.is_leaf() || left.index() == base + 1);
-        let (own, below) = entries.split_at_mut(1);
-        let (on_left, on_right) = below.split_at_mut(middle - 1);
-        executor.join(&mut || weigh_subtree(&nodes[1..middle], base + 1, on_left, costs, executor), &mut || {
-            weigh_subtree(&nodes[middle..], base + middle, on_right, costs, executor)
+struct Weighing<'a> {
+    references: &'a [Reference],
+    costs: Costs,
+    is_list: IsList<'a>,
+    executor: &'a dyn Executor,
+}
+
+impl Weighing<'_> {
+    /// Weigh the nodes of one subtree, which is all of `nodes`; the first is node `base` of the tree.
+    fn subtree(&self, nodes: &[Node], base: usize, entries: &mut [Entry]) {
+        if nodes.len() > FORK_ABOVE {
+            let [left, right] = nodes[0].children;
+            // Depth first: the left subtree follows its parent, the right one ends with it.
+            let middle = if right.is_leaf() { nodes.len() } else { right.index() - base };
+            debug_assert!(left.is_leaf() || left.index() == base + 1);
+            let (own, below) = entries.split_at_mut(1);
+            let (on_left, on_right) = below.split_at_mut(middle - 1);
+            self.executor.join(&mut || self.subtree(&nodes[1..middle], base + 1, on_left), &mut || {
+                self.subtree(&nodes[middle..], base + middle, on_right)
+            });
+            own[0] = self.weigh(&nodes[0], base + 1, below);
+            return;
+        }
+        for i in (0..nodes.len()).rev() {
+            entries[i] = self.weigh(&nodes[i], base, entries);
+        }
+    }
+
+    /// The entry of a node whose children have theirs; the first of `entries` is that of node `base`.
+    #[inline(always)]
+    fn weigh(&self, node: &Node, base: usize, entries: &[Entry]) -> Entry {
+        let costs = &self.costs;
+        let [left, right] = [0, 1].map(|side| match node.children[side] {
+            leaf if leaf.is_leaf() => {
+                let (first, count) = leaf.run();
+                let is_list = (self.is_list)(&self.references[first..first + count]);
+                let cost = [half_area(node, side) * costs.leaf(count as u32, is_list); WIDTH - 1];
+                Entry { cost, below: count as u32 | IS_LEAF | if is_list { IS_LIST } else { 0 } }
+            }
+            inner => entries[inner.index() - base],
         });
-        own[0] = weigh(&nodes[0], base + 1, below, costs);
-        return;
-    }
-    for i in (0..nodes.len()).rev() {
-        entries[i] = weigh(&nodes[i], base, entries, costs);
-    }
-}
-
-/// The entry of a node whose children have theirs; the first of `entries` is that of node `base`.
-#[inline(always)]
-fn weigh(node: &Node, base: usize, entries: &[Entry], costs: Costs) -> Entry {
-    let [left, right] = [0, 1].map(|side| match node.children[side] {
-        leaf if leaf.is_leaf() => {
-            let cost = [half_area(node, side) * costs.leaf; WIDTH - 1];
-            Entry { cost, references: leaf.run().1 as u16, is_leaf: true }
+        // `sums[i]`: as exactly two groups that share `i + 2` children.
+        let mut sums = [f32::INFINITY; WIDTH - 1];
+        for (i, sum) in sums.iter_mut().enumerate() {
+            for k in 0..=i {
+                *sum = least(*sum, left.cost[k] + right.cost[i - k]);
+            }
         }
-        inner => entries[inner.index() - base],
-    });
-    // `sums[i]`: as exactly two groups that share `i + 2` children.
-    let mut sums = [f32::INFINITY; WIDTH - 1];
-    for (i, sum) in sums.iter_mut().enumerate() {
-        for k in 0..=i {
-            *sum = least(*sum, left.cost[k] + right.cost[i - k]);
+        let area = half_area_around(node);
+        let (references, list) = (left.references() + right.references(), (left.below | right.below) & IS_LIST);
+        let fits = references as usize <= MAX_LEAF;
+        let as_node = area * costs.node + sums[WIDTH - 2];
+        let as_leaf = if fits { area * costs.leaf(references, list != 0) } else { f32::INFINITY };
+        let mut cost = [least(as_leaf, as_node); WIDTH - 1];
+        for i in 1..WIDTH - 1 {
+            cost[i] = least(sums[i - 1], cost[i - 1]);
         }
+        Entry { cost, below: references | list | if fits && as_leaf <= as_node { IS_LEAF } else { 0 } }
     }
-    let area = half_area_around(node);
-    let references = (left.references + right.references).min(MAX_LEAF as u16 + 1);
-    let as_node = area * costs.node + sums[WIDTH - 2];
-    let as_leaf = if usize::from(references) <= MAX_LEAF { area * costs.leaf } else { f32::INFINITY };
-    let mut cost = [least(as_leaf, as_node); WIDTH - 1];
-    for i in 1..WIDTH - 1 {
-        cost[i] = least(sums[i - 1], cost[i - 1]);
-    }
-    Entry { cost, references, is_leaf: usize::from(references) <= MAX_LEAF && as_leaf <= as_node }
 }
 
 #[inline(always)]
@@ -194,7 +264,17 @@ mod tests {
     use crate::build::reference::Reference;
     use crate::build::testing::{Threads, random_boxes};
 
-    const COSTS: Costs = Costs { node: 1.0, leaf: 0.7 };
+    const COSTS: Costs = Costs { node: 1.0, block: 0.7, listed: 0.2 };
+
+    /// Every other run of references, by its first.
+    fn is_list(run: &[Reference]) -> bool {
+        run.iter().any(|r| r.ids().1 % 8 == 0)
+    }
+
+    fn leaf_cost(tree: &BinaryTree, costs: Costs, (first, count): (usize, usize)) -> f64 {
+        let is_list = is_list(&tree.references[first..first + count]);
+        f64::from(if is_list { costs.listed * count as f32 } else { costs.block })
+    }
 
     fn tree(count: usize, seed: u64) -> BinaryTree {
         binned_sah::build(random_boxes(count, seed), &SplitCosts::BVH2, &Serial)
@@ -208,20 +288,20 @@ mod tests {
         tree.references.iter().map(Reference::bounds).reduce(Bounds3::union).unwrap()
     }
 
-    type Children<'a> = &'a dyn Fn(Child) -> Vec<(Child, Bounds3)>;
+    type Below<'a> = &'a dyn Fn(Child) -> Vec<(Child, Bounds3)>;
 
     /// The cost of the wide tree that `children` describes, and the references in its order.
-    fn walk(root: Child, bounds: Bounds3, costs: Costs, children: Children) -> (f64, Vec<usize>) {
+    fn walk(tree: &BinaryTree, root: Child, bounds: Bounds3, costs: Costs, children: Below) -> (f64, Vec<usize>) {
         if root.is_leaf() {
             let (first, count) = root.run();
-            return (area(bounds) * f64::from(costs.leaf), (first..first + count).collect());
+            return (area(bounds) * leaf_cost(tree, costs, root.run()), (first..first + count).collect());
         }
         let below = children(root);
         assert!((2..=WIDTH).contains(&below.len()));
         let mut sum = (area(bounds) * f64::from(costs.node), Vec::new());
         for (child, inner) in below {
             assert_eq!(bounds.union(inner), bounds);
-            let (cost, references) = walk(child, inner, costs, children);
+            let (cost, references) = walk(tree, child, inner, costs, children);
             sum.0 += cost;
             sum.1.extend(references);
         }
@@ -229,13 +309,9 @@ mod tests {
     }
 
     fn collapsed(tree: &BinaryTree, costs: Costs) -> (f64, Vec<usize>) {
-        let collapse = Collapse::new(tree, costs, &Serial);
-        let children = |node: Child| {
-            let mut out = Vec::new();
-            collapse.children(tree, node, &mut out);
-            out
-        };
-        walk(collapse.root(tree).unwrap(), whole(tree), costs, &children)
+        let collapse = Collapse::new(tree, costs, &is_list, &Serial);
+        let children = |node: Child| collapse.children(tree, node).to_vec();
+        walk(tree, collapse.root(tree).unwrap(), whole(tree), costs, &children)
     }
 
     /// The simple twin: what fits a leaf is one; the child of the largest box is opened while there is room.
@@ -258,7 +334,7 @@ mod tests {
             }
             out
         };
-        walk(as_one(tree.root.unwrap()), whole(tree), costs, &children)
+        walk(tree, as_one(tree.root.unwrap()), whole(tree), costs, &children)
     }
 
     /// First reference below, and how many there are.
@@ -291,7 +367,8 @@ mod tests {
             let as_leaf = child.is_leaf() || role(child) == 2;
             if as_leaf {
                 *above += 1;
-                return (runs(tree, child).1 <= MAX_LEAF).then(|| area(bounds) * f64::from(costs.leaf));
+                let run = runs(tree, child);
+                return (run.1 <= MAX_LEAF).then(|| area(bounds) * leaf_cost(tree, costs, run));
             }
             let node = tree.nodes[child.index()];
             let below = |count: &mut usize| {
@@ -319,7 +396,8 @@ mod tests {
             if tree.nodes.len() > 10 {
                 continue;
             }
-            for costs in [COSTS, Costs { node: 0.3, leaf: 1.0 }, Costs { node: 1.0, leaf: 0.1 }] {
+            let few_lists = Costs { node: 0.3, block: 1.0, listed: 1.0 };
+            for costs in [COSTS, few_lists, Costs { node: 1.0, block: 0.1, listed: 0.1 }] {
                 let (least, found) = (least_of_all(&tree, costs), collapsed(&tree, costs).0);
                 assert!((found - least).abs() < 1e-5 * least, "{found} against {least} with {costs:?}");
                 tried += 1;
@@ -358,14 +436,14 @@ mod tests {
         let tree = tree(60_000, 11);
         assert!(tree.nodes.len() > 2 * FORK_ABOVE);
         let [a, b]: [&dyn Executor; 2] = [&Serial, &Threads];
-        let [a, b] = [a, b].map(|e| Collapse::new(&tree, COSTS, e).entries);
-        let bits = |e: &Entry| (e.cost.map(f32::to_bits), e.references, e.is_leaf);
+        let [a, b] = [a, b].map(|e| Collapse::new(&tree, COSTS, &is_list, e).entries);
+        let bits = |e: &Entry| (e.cost.map(f32::to_bits), e.below);
         assert!(a.iter().map(bits).eq(b.iter().map(bits)));
     }
 
     #[test]
     fn nothing_collapses_to_nothing() {
         let tree = binned_sah::build(Vec::new(), &SplitCosts::BVH2, &Serial);
-        assert!(Collapse::new(&tree, COSTS, &Serial).root(&tree).is_none());
+        assert!(Collapse::new(&tree, COSTS, &is_list, &Serial).root(&tree).is_none());
     }
 }

@@ -2,11 +2,11 @@
 
 use super::binary::{BinaryTree, Child, Node};
 use super::reference::{Box4, Reference};
-use crate::Executor;
+use crate::{Executor, memory};
 use std::mem::MaybeUninit;
 
 /// Subtrees of more references than this are handed to the executor in two halves.
-const FORK_ABOVE: usize = 1 << 15;
+const FORK_ABOVE: usize = 1 << 12;
 
 /// A leaf, or two clusters made one.
 #[derive(Clone, Copy)]
@@ -62,8 +62,8 @@ impl Part {
 
 /// The tree that `top` and the groves below describe.
 pub(super) fn lay_out(source: &[Reference], groves: &[Grove], top: &Part, executor: &dyn Executor) -> BinaryTree {
-    let mut nodes: Vec<Node> = Vec::with_capacity(top.leaves - 1);
-    let mut references: Vec<Reference> = Vec::with_capacity(top.references);
+    let mut nodes: Vec<Node> = memory::with_capacity(top.leaves - 1);
+    let mut references: Vec<Reference> = memory::with_capacity(top.references);
     let room = Room {
         nodes: &mut nodes.spare_capacity_mut()[..top.leaves - 1],
         references: &mut references.spare_capacity_mut()[..top.references],

@@ -11,6 +11,7 @@ mod layout;
 pub(crate) mod morton;
 pub(crate) mod parallel;
 mod partition;
+mod pieces;
 pub(crate) mod reference;
 pub(crate) mod reinsertion;
 mod spatial_bins;

@@ -5,8 +5,8 @@ use super::parallel::for_each;
 use super::reference::{Box4, Reference};
 use crate::Executor;
 
-/// References that one thread handles at a time: half a megabyte.
-pub(crate) const CHUNK: usize = 1 << 14;
+/// References that one thread handles at a time: 128 kilobytes.
+pub(crate) const CHUNK: usize = 1 << 12;
 
 /// Put those for which `left` holds first; returns how many they are. Without a branch on the data.
 #[inline(always)]

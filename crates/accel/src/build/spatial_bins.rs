@@ -11,6 +11,7 @@ use crate::triangle::Corners;
 /// Slabs along each axis, at most.
 pub(super) const MAX_SLABS: usize = 16;
 
+#[derive(Clone, Copy)]
 pub(super) struct SpatialBins {
     low: Lanes,
     /// Of a slab.
@@ -43,6 +44,17 @@ impl SpatialBins {
         }));
         let (boxes, none) = ([[Box4::EMPTY; 3]; MAX_SLABS], [[0; 4]; MAX_SLABS]);
         SpatialBins { low: whole.lo, size, scale, slabs, boxes, enter: none, leave: none }
+    }
+
+    /// Add what is in others over the same box.
+    pub fn merge(&mut self, other: &Self) {
+        for slab in 0..self.slabs {
+            for axis in 0..3 {
+                self.boxes[slab][axis] = self.boxes[slab][axis].union(other.boxes[slab][axis]);
+                self.enter[slab][axis] += other.enter[slab][axis];
+                self.leave[slab][axis] += other.leave[slab][axis];
+            }
+        }
     }
 
     /// Take in references; those without corners are not cut.

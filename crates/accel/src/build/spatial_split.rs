@@ -10,7 +10,8 @@ use super::binned_sah::{Builder, has_room};
 use super::bins::{Binning, Bins, MAX_BINS, Plane};
 use super::clip;
 use super::costs::Costs;
-use super::partition::{centers, partition};
+use super::partition::{centers, cut, partition, partition_in_chunks};
+use super::pieces::Piece;
 use super::reference::{Box4, MAX_ID, Reference};
 use super::spatial_bins::{MAX_SLABS, SpatialBins, SpatialPlane};
 use crate::Executor;
@@ -23,7 +24,7 @@ const OVERLAP: f32 = 1e-5;
 /// ... and where a cut between the sides would take more than this part of the whole area off theirs.
 const LEAST_GAIN: f32 = 0.07;
 /// Subtrees larger than this are handed to the executor in two halves.
-const FORK_ABOVE: usize = 1 << 15;
+const FORK_ABOVE: usize = 1 << 12;
 
 /// The corners of a reference's triangle; `None` for what shall not be cut.
 pub(crate) type CornersOf<'a> = &'a (dyn Fn(&Reference) -> Option<Corners> + Sync);
@@ -46,31 +47,15 @@ pub(crate) fn build(
     references.resize(count + room, blank);
     let splitter =
         Splitter { corners, builder: Builder { costs, executor }, least_overlap: whole.half_area() * OVERLAP };
-    let mut piece = splitter.piece(&mut references, count, whole, 0);
+    let piece = splitter.piece(&mut references, count, whole, 0);
     drop(references);
-    piece.nodes.shrink_to_fit();
-    BinaryTree { nodes: piece.nodes, root: Some(piece.root), references: piece.references }
+    piece.into_tree(executor)
 }
 
-/// A tree of its own.
-struct Piece {
+/// What is being built of a subtree.
+struct Grown {
     nodes: Vec<Node>,
     references: Vec<Reference>,
-    root: Child,
-}
-
-impl Piece {
-    /// Add another; returns where its root is now.
-    fn append(&mut self, other: Piece) -> Child {
-        let (node, first) = (self.nodes.len(), self.references.len());
-        let moved = |c: Child| match c.is_leaf() {
-            true => Child::leaf(c.run().0 + first, c.run().1),
-            false => c.moved(node),
-        };
-        self.nodes.extend(other.nodes.iter().map(|n| Node { children: n.children.map(moved), ..*n }));
-        self.references.extend_from_slice(&other.references);
-        moved(other.root)
-    }
 }
 
 struct Splitter<'a> {
@@ -96,18 +81,17 @@ impl Parted {
 impl Splitter<'_> {
     /// `references` is `count` of them, and room.
     fn piece(&self, references: &mut [Reference], count: usize, whole: Box4, depth: usize) -> Piece {
-        let mut piece =
-            Piece { nodes: Vec::with_capacity(count / 3), references: Vec::with_capacity(count), root: Child::node(0) };
         let room = references.len() - count;
         let mut bins = Bins::EMPTY;
         if count <= FORK_ABOVE {
-            (piece.root, _) = self.subtree(references, count, room, whole, depth, &mut piece, &mut bins);
-            return piece;
+            let mut out = Grown { nodes: Vec::with_capacity(count / 3), references: Vec::with_capacity(count) };
+            let (root, _) = self.subtree(references, count, room, whole, depth, &mut out, &mut bins);
+            return Piece::with_references(out.nodes, root, out.references);
         }
         let Some(parted) = self.split(references, count, room, &whole, depth, &mut bins) else {
             let references = &mut references[..count];
             let (nodes, root) = self.builder.nodes(references, depth);
-            return Piece { nodes, references: references.to_vec(), root: root.expect("a root over references") };
+            return Piece::with_references(nodes, root.expect("a root over references"), references.to_vec());
         };
         let room = references.len() - parted.counts[0] - parted.counts[1];
         let (room_of_low, upper) = deal(references, &parted, room);
@@ -117,11 +101,7 @@ impl Splitter<'_> {
             || self.piece(high, parted.counts[1], parted.boxes[1], depth + 1),
             || self.piece(low, parted.counts[0], parted.boxes[0], depth + 1),
         );
-        piece.nodes.push(parted.node());
-        for (side, half) in halves.into_iter().enumerate() {
-            piece.nodes[0].children[side] = piece.append(half);
-        }
-        piece
+        Piece::forked(parted.node(), halves)
     }
 
     /// The first `count` of `references` are to be built over, and up to `room` more may come to be; returns also what of the
@@ -133,7 +113,7 @@ impl Splitter<'_> {
         room: usize,
         whole: Box4,
         depth: usize,
-        out: &mut Piece,
+        out: &mut Grown,
         bins: &mut Bins,
     ) -> (Child, usize) {
         let Some(parted) = self.split(references, count, room, &whole, depth, bins) else {
@@ -158,7 +138,7 @@ impl Splitter<'_> {
         references: &mut [Reference],
         whole: Box4,
         depth: usize,
-        out: &mut Piece,
+        out: &mut Grown,
         bins: &mut Bins,
     ) -> Child {
         let root = self.builder.subtree(references, out.references.len(), whole, depth, &mut out.nodes, bins);
@@ -182,13 +162,23 @@ impl Splitter<'_> {
         }
         let costs = self.builder.costs;
         let own = &mut references[..count];
-        let binning = Binning::new(&centers(own), if count < 256 { 16 } else { MAX_BINS });
-        bins.fill(own, &binning);
+        let is_large = count > FORK_ABOVE;
+        let middle = if is_large { self.builder.around(own).centers } else { centers(own) };
+        let binning = Binning::new(&middle, if count < 256 { 16 } else { MAX_BINS });
+        if is_large {
+            *bins = self.builder.bins(own, &binning);
+        } else {
+            bins.fill(own, &binning);
+        }
         let plane = bins.best_plane(&binning, costs);
         // Cut where the sides overlap, if it is cheaper.
         if plane.as_ref().is_none_or(|p| self.is_worth_a_cut(p, whole)) {
             let mut slabs = SpatialBins::new(whole, if count < 64 { 8 } else { MAX_SLABS });
-            slabs.fill(own, self.corners);
+            if is_large {
+                slabs = self.slabs(own, slabs);
+            } else {
+                slabs.fill(own, self.corners);
+            }
             let split_cost = plane.as_ref().map_or(f32::INFINITY, |p| p.cost);
             let cut = slabs.best_plane(costs).filter(|cut| cut.cost < split_cost);
             if let Some(parted) = cut.and_then(|cut| self.cut(references, count, room, &cut)) {
@@ -197,8 +187,24 @@ impl Splitter<'_> {
         }
         let plane = plane?;
         let own = &mut references[..count];
-        let left = partition(own, |r| binning.is_left(r, &plane));
+        let is_left = |r: &Reference| binning.is_left(r, &plane);
+        let left = match is_large {
+            true => partition_in_chunks(own, &|chunk| partition(chunk, is_left), self.builder.executor).0,
+            false => partition(own, is_left),
+        };
         Some(Parted { counts: [left, count - left], boxes: plane.boxes })
+    }
+
+    /// The references in slabs that were empty.
+    fn slabs(&self, references: &[Reference], mut slabs: SpatialBins) -> SpatialBins {
+        let Some(middle) = cut(references) else {
+            slabs.fill(references, self.corners);
+            return slabs;
+        };
+        let (a, b) = references.split_at(middle);
+        let [mut a, b] = self.builder.both(|| self.slabs(a, slabs), || self.slabs(b, slabs));
+        a.merge(&b);
+        a
     }
 
     /// True when the sides overlap by much: in area, and in what a cut between them would take off the sides' areas.

@@ -1,6 +1,7 @@
 //! The memory of a tree: 64-byte lines that hold nodes and leaves side by side, without pointers.
 
 use super::node::{BLOCK_LINES, Block, LIST_LINES, List, MOTION_LINES, MotionNode, NODE_LINES, Node};
+use std::mem::MaybeUninit;
 
 /// One cache line.
 #[derive(Clone, Copy)]
@@ -10,7 +11,7 @@ pub(super) struct Line(pub [u32; 16]);
 /// What may lie in an arena.
 ///
 /// # Safety
-/// Plain numbers only, every bit pattern valid, a whole number of lines, aligned like a line.
+/// Plain numbers only without padding, every bit pattern valid, a whole number of lines, aligned like a line.
 pub(super) unsafe trait Item: Copy {
     const LINES: usize;
 }
@@ -27,7 +28,7 @@ unsafe impl Item for MotionNode {
 unsafe impl Item for Block {
     const LINES: usize = BLOCK_LINES;
 }
-// SAFETY: as above; its padding is written as zeros by `put`, since that copies into lines that were zero.
+// SAFETY: as above.
 unsafe impl Item for List {
     const LINES: usize = LIST_LINES;
 }
@@ -38,7 +39,14 @@ const _: () = assert!(
 /// Write an item to its lines.
 pub(super) fn put<T: Item>(lines: &mut [Line], item: &T) {
     assert!(lines.len() >= T::LINES, "room for the item");
-    // SAFETY: there is room, lines are aligned for items, and items are plain numbers.
+    // SAFETY: there is room, lines are aligned for items, and items are plain numbers without padding.
+    unsafe { lines.as_mut_ptr().cast::<T>().write(*item) };
+}
+
+/// Write an item to new lines, all of them.
+pub(super) fn fill<T: Item>(lines: &mut [MaybeUninit<Line>], item: &T) {
+    assert!(lines.len() == T::LINES, "room for the item and no more");
+    // SAFETY: as above.
     unsafe { lines.as_mut_ptr().cast::<T>().write(*item) };
 }
 

@@ -102,9 +102,11 @@ impl Tree {
                 reinsertion::improve(split, Effort::BEST, executor)
             }
         };
+        let is_compact = quality == Quality::Compact;
         let is_split = binary.references.len() > count;
         let numbers = Numbers::new(geometries);
-        let (lines, root) = emit::emit(&binary, &bounds, geometries, &numbers, quality == Quality::Compact, executor);
+        let (lines, root) =
+            emit::emit(&binary, &bounds, (geometries, instances), &numbers, is_compact, costs.leaf, executor);
         let mut tree =
             Tree { lines, root, numbers, unbounded, bounds, reach: 0.0, is_split, is_moving, has_avx2: has_avx2() };
         if is_moving {

@@ -53,6 +53,8 @@ pub(super) struct Block {
 pub(super) struct List {
     /// Numbers within the level.
     pub numbers: [u32; WIDTH],
+    /// Zeros up to the end of the line.
+    pub rest: [u32; WIDTH],
 }
 
 /// Where a node or a leaf is: its type and size in the top 4 bits, its first line in the others. 28 bits of lines
@@ -198,5 +200,5 @@ impl Block {
 impl List {
     /// Fills what is not used.
     pub const NONE: u32 = u32::MAX;
-    pub const EMPTY: List = List { numbers: [List::NONE; WIDTH] };
+    pub const EMPTY: List = List { numbers: [List::NONE; WIDTH], rest: [0; WIDTH] };
 }

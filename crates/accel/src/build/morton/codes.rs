@@ -1,8 +1,8 @@
 //! Where primitives lie along a Morton curve, and the sort by that.
 
-use crate::Executor;
 use crate::build::parallel::for_each;
 use crate::build::reference::{Box4, Reference};
+use crate::{Executor, memory};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A place on the curve in the upper 33 bits, the index of the reference in the lower 28.
@@ -12,8 +12,6 @@ const BITS_PER_AXIS: u32 = 11;
 /// Keys are sorted digit by digit.
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
-/// References that a job takes at once.
-const CHUNK: usize = 1 << 16;
 
 /// The place on the curve.
 #[inline(always)]
@@ -27,13 +25,19 @@ pub(super) fn index(key: Key) -> usize {
     (key & ((1 << INDEX_BITS) - 1)) as usize
 }
 
+/// How many of so many references a job takes at once.
+fn chunk_of(count: usize) -> usize {
+    (count / 32).clamp(1 << 12, 1 << 16)
+}
+
 /// The keys of all references, ascending.
 pub(super) fn sorted(references: &[Reference], executor: &dyn Executor) -> Vec<Key> {
     let grid = Grid::new(&center_bounds(references, executor));
-    let mut keys: Vec<Key> = vec![0; references.len()];
-    let mut chunks: Vec<(usize, &mut [Key])> = keys.chunks_mut(CHUNK).enumerate().collect();
+    let mut keys: Vec<Key> = memory::filled(0, references.len());
+    let size = chunk_of(references.len());
+    let mut chunks: Vec<(usize, &mut [Key])> = keys.chunks_mut(size).enumerate().collect();
     for_each(&mut chunks, executor, &|(i, chunk)| {
-        let first = *i * CHUNK;
+        let first = *i * size;
         for (k, (key, r)) in chunk.iter_mut().zip(&references[first..]).enumerate() {
             *key = grid.key(r, first + k);
         }
@@ -57,7 +61,8 @@ fn with_center(b: Box4, r: &Reference) -> Box4 {
 }
 
 fn center_bounds(references: &[Reference], executor: &dyn Executor) -> Box4 {
-    let mut parts: Vec<(&[Reference], Box4)> = references.chunks(CHUNK).map(|c| (c, Box4::EMPTY)).collect();
+    let mut parts: Vec<(&[Reference], Box4)> =
+        references.chunks(chunk_of(references.len())).map(|c| (c, Box4::EMPTY)).collect();
     for_each(&mut parts, executor, &|(chunk, b)| *b = chunk.iter().fold(Box4::EMPTY, with_center));
     parts.iter().fold(Box4::EMPTY, |b, part| b.union(part.1))
 }
@@ -100,11 +105,12 @@ fn spread(x: u64) -> u64 {
 
 /// Sort by the codes, the order of equal ones kept.
 fn radix_sort(mut keys: Vec<Key>, executor: &dyn Executor) -> Vec<Key> {
-    let mut sorted: Vec<Key> = vec![0; keys.len()];
-    let mut parts: Vec<(usize, [u32; DIGITS])> = (0..keys.len()).step_by(CHUNK).map(|i| (i, [0; DIGITS])).collect();
+    let mut sorted: Vec<Key> = memory::filled(0, keys.len());
+    let size = chunk_of(keys.len());
+    let mut parts: Vec<(usize, [u32; DIGITS])> = (0..keys.len()).step_by(size).map(|i| (i, [0; DIGITS])).collect();
     for shift in (INDEX_BITS..INDEX_BITS + 3 * BITS_PER_AXIS).step_by(DIGIT_BITS as usize) {
         let digit = |key: &Key| (key >> shift) as usize & (DIGITS - 1);
-        let chunk = |first: usize| &keys[first..(first + CHUNK).min(keys.len())];
+        let chunk = |first: usize| &keys[first..(first + size).min(keys.len())];
         for_each(&mut parts, executor, &|(first, counts)| {
             *counts = [0; DIGITS];
             chunk(*first).iter().for_each(|key| counts[digit(key)] += 1);
@@ -153,7 +159,7 @@ mod tests {
 
     #[test]
     fn keys_are_sorted_and_each_is_there_once() {
-        let references = random_boxes(3 * CHUNK / 2, 1);
+        let references = random_boxes(100_000, 1);
         let keys = sorted(&references, &Serial);
         assert!(keys.is_sorted());
         let mut indices: Vec<usize> = keys.iter().map(|k| index(*k)).collect();

@@ -16,7 +16,7 @@ use super::reference::Reference;
 use crate::Executor;
 
 /// About how many references a grove spans.
-const GROVE: usize = 1 << 15;
+const GROVE: usize = 1 << 13;
 
 /// The tree over `references`.
 pub(crate) fn build(references: Vec<Reference>, executor: &dyn Executor) -> BinaryTree {
@@ -105,8 +105,8 @@ mod tests {
         let references = random_boxes(20_000, 9);
         let cost = |tree: BinaryTree| {
             use crate::build::collapse::{Collapse, Costs};
-            let costs = Costs { node: 1.0, leaf: 1.0 };
-            Collapse::new(&tree, costs, &Serial).cost()
+            let costs = Costs { node: 1.0, block: 1.0, listed: 1.0 };
+            Collapse::new(&tree, costs, &|_| false, &Serial).cost()
         };
         let fast = cost(build(references.clone(), &Serial));
         let good = cost(crate::build::binned_sah::build(references, &crate::build::costs::Costs::BVH2, &Serial));
