@@ -24,9 +24,9 @@ pub(crate) fn build(mut references: Vec<Reference>, costs: &Costs, executor: &dy
 
 /// The boxes around some references and around their centers.
 #[derive(Clone, Copy)]
-pub(super) struct Around {
-    pub whole: Box4,
-    pub centers: Box4,
+struct Around {
+    whole: Box4,
+    centers: Box4,
 }
 
 struct Split {
@@ -50,26 +50,40 @@ impl Builder<'_> {
         (nodes, Some(root))
     }
 
-    pub fn around(&self, references: &[Reference]) -> Around {
-        let Some(middle) = cut(references) else {
-            let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
-            return Around { whole, centers: partition::centers(references) };
+    fn around(&self, references: &[Reference]) -> Around {
+        let each = |chunk: &[Reference]| {
+            let whole = chunk.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
+            Around { whole, centers: partition::centers(chunk) }
         };
-        let (a, b) = references.split_at(middle);
-        let [a, b] = self.both(|| self.around(a), || self.around(b));
-        Around { whole: a.whole.union(b.whole), centers: a.centers.union(b.centers) }
+        self.sum(references, &each, &|a, b| Around {
+            whole: a.whole.union(b.whole),
+            centers: a.centers.union(b.centers),
+        })
     }
 
     pub fn bins(&self, references: &[Reference], binning: &Binning) -> Bins {
-        let Some(middle) = cut(references) else {
+        let each = |chunk: &[Reference]| {
             let mut bins = Bins::EMPTY;
-            bins.fill(references, binning);
-            return bins;
+            bins.fill(chunk, binning);
+            bins
         };
+        self.sum(references, &each, &|mut a, b| {
+            a.merge(&b);
+            a
+        })
+    }
+
+    /// What `each` makes of chunks, added up in an order that depends on their number only.
+    pub fn sum<T: Send>(
+        &self,
+        references: &[Reference],
+        each: &(impl Fn(&[Reference]) -> T + Sync),
+        add: &(impl Fn(T, T) -> T + Sync),
+    ) -> T {
+        let Some(middle) = cut(references) else { return each(references) };
         let (a, b) = references.split_at(middle);
-        let [mut a, b] = self.both(|| self.bins(a, binning), || self.bins(b, binning));
-        a.merge(&b);
-        a
+        let [a, b] = self.both(|| self.sum(a, each, add), || self.sum(b, each, add));
+        add(a, b)
     }
 
     /// Both results, perhaps computed at once.

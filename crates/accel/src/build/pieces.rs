@@ -144,3 +144,36 @@ impl<'a> Room<'a> {
         (own, [left, right])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Serial;
+    use crate::build::binned_sah;
+    use crate::build::costs::Costs;
+    use crate::build::testing::{Threads, assert_sound, random_boxes};
+    use kirkas_geometry::Bounds3;
+
+    /// A tree over each part, and nodes above: `((0 1) 2)`.
+    fn forked(parts: [&[Reference]; 3]) -> Piece {
+        let around = |r: &[Reference]| r.iter().fold(Bounds3::EMPTY, |b, r| b.union(r.bounds()));
+        let [a, b, c] = parts.map(|part| {
+            let tree = binned_sah::build(part.to_vec(), &Costs::WIDE, &Serial);
+            Piece::with_references(tree.nodes, tree.root.expect("a root"), tree.references)
+        });
+        let boxes = parts.map(around);
+        let node = |a: Bounds3, b: Bounds3| Node::new([&a, &b], [Child::node(0); 2]);
+        let low = Piece::forked(node(boxes[0], boxes[1]), [a, b]);
+        Piece::forked(node(boxes[0].union(boxes[1]), boxes[2]), [low, c])
+    }
+
+    #[test]
+    fn pieces_make_one_sound_tree() {
+        let references = random_boxes(500, 4);
+        for (first, second) in [(100, 300), (1, 2), (7, 499)] {
+            let parts = || [&references[..first], &references[first..second], &references[second..]];
+            assert_sound(&forked(parts()).into_tree(&Serial), &references);
+            assert_sound(&forked(parts()).into_tree(&Threads), &references);
+        }
+    }
+}

@@ -10,7 +10,7 @@ use super::binned_sah::{Builder, has_room};
 use super::bins::{Binning, Bins, MAX_BINS, Plane};
 use super::clip;
 use super::costs::Costs;
-use super::partition::{centers, cut, partition, partition_in_chunks};
+use super::partition::{centers, partition, partition_in_chunks};
 use super::pieces::Piece;
 use super::reference::{Box4, MAX_ID, Reference};
 use super::spatial_bins::{MAX_SLABS, SpatialBins, SpatialPlane};
@@ -94,7 +94,7 @@ impl Splitter<'_> {
             return Piece::with_references(nodes, root.expect("a root over references"), references.to_vec());
         };
         let room = references.len() - parted.counts[0] - parted.counts[1];
-        let (room_of_low, upper) = deal(references, &parted, room);
+        let (room_of_low, upper) = self.deal(references, &parted, room);
         let (low, high) = references.split_at_mut(upper);
         debug_assert_eq!(low.len(), parted.counts[0] + room_of_low);
         let halves = self.builder.both(
@@ -123,7 +123,7 @@ impl Splitter<'_> {
         out.nodes.push(parted.node());
         let [low, high] = parted.counts;
         let room = room + count - (low + high);
-        let (room_of_low, upper) = deal(references, &parted, room);
+        let (room_of_low, upper) = self.deal(references, &parted, room);
         let rest = &mut references[upper..];
         let (a, left) = self.subtree(rest, high, room - room_of_low, parted.boxes[1], depth + 1, out, bins);
         // Done with those, their places are free.
@@ -163,7 +163,7 @@ impl Splitter<'_> {
         let costs = self.builder.costs;
         let own = &mut references[..count];
         let is_large = count > FORK_ABOVE;
-        let middle = if is_large { self.builder.around(own).centers } else { centers(own) };
+        let middle = self.builder.sum(own, &centers, &Box4::union);
         let binning = Binning::new(&middle, if count < 256 { 16 } else { MAX_BINS });
         if is_large {
             *bins = self.builder.bins(own, &binning);
@@ -173,12 +173,16 @@ impl Splitter<'_> {
         let plane = bins.best_plane(&binning, costs);
         // Cut where the sides overlap, if it is cheaper.
         if plane.as_ref().is_none_or(|p| self.is_worth_a_cut(p, whole)) {
-            let mut slabs = SpatialBins::new(whole, if count < 64 { 8 } else { MAX_SLABS });
-            if is_large {
-                slabs = self.slabs(own, slabs);
-            } else {
-                slabs.fill(own, self.corners);
-            }
+            let blank = SpatialBins::new(whole, if count < 64 { 8 } else { MAX_SLABS });
+            let each = |chunk: &[Reference]| {
+                let mut slabs = blank;
+                slabs.fill(chunk, self.corners);
+                slabs
+            };
+            let slabs = self.builder.sum(own, &each, &|mut a, b| {
+                a.merge(&b);
+                a
+            });
             let split_cost = plane.as_ref().map_or(f32::INFINITY, |p| p.cost);
             let cut = slabs.best_plane(costs).filter(|cut| cut.cost < split_cost);
             if let Some(parted) = cut.and_then(|cut| self.cut(references, count, room, &cut)) {
@@ -193,18 +197,6 @@ impl Splitter<'_> {
             false => partition(own, is_left),
         };
         Some(Parted { counts: [left, count - left], boxes: plane.boxes })
-    }
-
-    /// The references in slabs that were empty.
-    fn slabs(&self, references: &[Reference], mut slabs: SpatialBins) -> SpatialBins {
-        let Some(middle) = cut(references) else {
-            slabs.fill(references, self.corners);
-            return slabs;
-        };
-        let (a, b) = references.split_at(middle);
-        let [mut a, b] = self.builder.both(|| self.slabs(a, slabs), || self.slabs(b, slabs));
-        a.merge(&b);
-        a
     }
 
     /// True when the sides overlap by much: in area, and in what a cut between them would take off the sides' areas.
@@ -274,30 +266,31 @@ impl Splitter<'_> {
             None => Goes::Right,
         }
     }
+
+    /// Move the high ones up, so that both sides have their share of the room after them; returns the low ones' share and where
+    /// the high ones begin.
+    fn deal(&self, references: &mut [Reference], parted: &Parted, room: usize) -> (usize, usize) {
+        let [low, high] = parted.counts;
+        let count = low + high;
+        let each = |r: &[Reference]| r.iter().map(|r| f64::from(r.0.half_area())).sum::<f64>();
+        let areas = |r: &[Reference]| self.builder.sum(r, &each, &|a, b| a + b);
+        let (of_low, of_high) = (areas(&references[..low]), areas(&references[low..count]));
+        let share = if of_low + of_high > 0.0 { of_low / (of_low + of_high) } else { 0.5 };
+        let room_of_low = ((room as f64 * share) as usize).min(room);
+        // Their order does not matter.
+        if room_of_low <= high {
+            references.copy_within(low..low + room_of_low, count);
+        } else {
+            references.copy_within(low..count, low + room_of_low);
+        }
+        (room_of_low, low + room_of_low)
+    }
 }
 
 enum Goes {
     Left,
     Right,
     Both(Corners),
-}
-
-/// Move the high ones up, so that both sides have their share of the room after them; returns the low ones' share and where
-/// the high ones begin.
-fn deal(references: &mut [Reference], parted: &Parted, room: usize) -> (usize, usize) {
-    let [low, high] = parted.counts;
-    let count = low + high;
-    let areas = |r: &[Reference]| r.iter().map(|r| f64::from(r.0.half_area())).sum::<f64>();
-    let (of_low, of_high) = (areas(&references[..low]), areas(&references[low..count]));
-    let share = if of_low + of_high > 0.0 { of_low / (of_low + of_high) } else { 0.5 };
-    let room_of_low = ((room as f64 * share) as usize).min(room);
-    // Their order does not matter.
-    if room_of_low <= high {
-        references.copy_within(low..low + room_of_low, count);
-    } else {
-        references.copy_within(low..count, low + room_of_low);
-    }
-    (room_of_low, low + room_of_low)
 }
 
 #[cfg(test)]

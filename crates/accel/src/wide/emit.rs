@@ -247,3 +247,55 @@ fn finish_node(own: &mut [MaybeUninit<Line>], children: impl Iterator<Item = (Bo
     fill(own, &node);
     Promise { probability: 1.0 - missed, cost }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::Executor;
+    use crate::build::testing::Threads;
+    use crate::scene_geometry::{Geometry, Shape, Sphere};
+    use crate::wide::{Quality, Tree};
+    use crate::{Accel, AccelKind, SceneGeometry, Serial};
+    use kirkas_geometry::Vec3;
+    use kirkas_geometry::hash::{combine, unit_f32};
+    use std::sync::Arc;
+
+    fn at(i: usize) -> Vec3 {
+        let unit = |k: u64| unit_f32(combine(combine(7, i as u64), k) as u32);
+        Vec3::new(unit(0), unit(1), unit(2))
+    }
+
+    fn geometry(shape: Shape) -> Geometry {
+        Geometry { shape, opaque: true, mask: u32::MAX }
+    }
+
+    fn spheres(count: usize) -> Geometry {
+        geometry(Shape::Spheres(Arc::new((0..count).map(|i| Sphere { center: at(i), radius: 0.003 }).collect())))
+    }
+
+    fn triangles(count: usize) -> Geometry {
+        let corners = |i: usize| [at(i), at(i) + at(i + 1) * 0.02, at(i) + at(i + 2) * 0.02];
+        let positions = Arc::new((0..count).flat_map(corners).collect());
+        let indices = Arc::new((0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect());
+        geometry(Shape::Triangles { positions, indices })
+    }
+
+    #[test]
+    fn the_executor_does_not_show() {
+        let level = [triangles(30_000), spheres(10_000)];
+        for quality in [Quality::Fast, Quality::Default, Quality::Best, Quality::Compact] {
+            let [a, b] = [&Serial as &dyn Executor, &Threads].map(|e| Tree::build(quality, &level, &[], e));
+            assert!(a.lines.iter().map(|l| l.0).eq(b.lines.iter().map(|l| l.0)) && a.root == b.root);
+            assert_eq!(a.validate(&level, &[]), Ok(()));
+        }
+    }
+
+    #[test]
+    fn what_is_tested_one_by_one_is_parted_as_in_a_binary_tree() {
+        let cost = |kind: AccelKind| {
+            let scene = SceneGeometry { world: vec![spheres(20_000)], ..SceneGeometry::default() };
+            Accel::build(kind, scene, &Serial).expect("a sound scene").statistics().sah_cost
+        };
+        let (wide, binary) = (cost(AccelKind::Bvh8), cost(AccelKind::Bvh2));
+        assert!(wide < 0.5 * binary, "{wide} against {binary}");
+    }
+}
