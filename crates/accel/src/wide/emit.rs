@@ -205,10 +205,8 @@ impl Emitter<'_> {
                 unreachable!("blocks are of triangles")
             };
             let corners = primitive::corners(positions, indices[index as usize]);
-            for c in 0..3 {
-                for k in 0..3 {
-                    block.corners[3 * c + k][lane] = corners[c][k];
-                }
+            for (row, value) in block.corners.iter_mut().zip(corners.as_flattened()) {
+                row[lane] = *value;
             }
             block.numbers[lane] = self.numbers.of(geometry, index);
             let [a, b, c] = corners.map(kirkas_geometry::Vec3::from_array);
