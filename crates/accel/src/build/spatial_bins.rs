@@ -64,9 +64,7 @@ impl SpatialBins {
             for axis in 0..3 {
                 let slab = first[axis] & (MAX_SLABS - 1);
                 if slab == last[axis] & (MAX_SLABS - 1) {
-                    self.boxes[slab][axis] = self.boxes[slab][axis].union(r.0);
-                    self.enter[slab][axis] += 1;
-                    self.leave[slab][axis] += 1;
+                    self.add(axis, slab, r.0);
                 }
             }
             if first != last {
@@ -90,7 +88,7 @@ impl SpatialBins {
             match &corners {
                 _ if first == last => {}
                 Some(corners) => self.cut(axis, first, last, r, corners),
-                None => self.add(axis, middle, middle, middle, r.0),
+                None => self.add(axis, middle, r.0),
             }
         }
     }
@@ -105,10 +103,10 @@ impl SpatialBins {
     }
 
     #[inline(always)]
-    fn add(&mut self, axis: usize, slab: usize, first: usize, last: usize, around: Box4) {
+    fn add(&mut self, axis: usize, slab: usize, around: Box4) {
         self.boxes[slab][axis] = self.boxes[slab][axis].union(around);
-        self.enter[slab][axis] += u32::from(slab == first);
-        self.leave[slab][axis] += u32::from(slab == last);
+        self.enter[slab][axis] += 1;
+        self.leave[slab][axis] += 1;
     }
 
     fn plane(&self, axis: usize, after: usize) -> f32 {
@@ -116,14 +114,16 @@ impl SpatialBins {
     }
 
     fn cut(&mut self, axis: usize, first: usize, last: usize, r: &Reference, corners: &Corners) {
-        let mut parts = [Box4::EMPTY; MAX_SLABS];
         let corners = corners.map(|[x, y, z]| Lanes([x, y, z, 0.0]));
         // One slab more on both sides stands for all that lies beyond.
-        let slab = |c: Lanes| ((c.0[axis] - self.low.0[axis]) * self.scale.0[axis] + 1.0).clamp(0.0, 1e3) as isize - 1;
+        let (low, size, scale) = (self.low.0[axis], self.size.0[axis], self.scale.0[axis]);
+        let slab = |c: Lanes| ((c.0[axis] - low) * scale + 1.0).clamp(0.0, 1e3) as isize - 1;
+        let first_plane = self.plane(axis, 0);
         let slabs = corners.map(slab);
         let mut put = |slab: isize, p: Lanes| {
             if (first as isize..=last as isize).contains(&slab) {
-                parts[slab as usize] = parts[slab as usize].union(Box4 { lo: p, hi: p });
+                let part = &mut self.boxes[slab as usize & (MAX_SLABS - 1)][axis];
+                *part = part.union(Box4 { lo: p.max(r.0.lo), hi: p.min(r.0.hi) });
             }
         };
         for i in 0..3 {
@@ -133,16 +133,14 @@ impl SpatialBins {
             let (from, along) = (corners[low], corners[high].minus(corners[low]));
             let begin = slabs[low].max(first as isize - 1);
             for k in begin..slabs[high].min(last as isize + 1) {
-                let t = (self.plane(axis, 0) + self.size.0[axis] * k as f32 - from.0[axis]) / along.0[axis];
+                let t = (first_plane + size * k as f32 - from.0[axis]) / along.0[axis];
                 let crossing = from.plus(along.times(Lanes::splat(t)));
                 put(k, crossing);
                 put(k + 1, crossing);
             }
         }
-        for (slab, part) in parts.iter().enumerate().take(last + 1).skip(first) {
-            let part = Box4 { lo: part.lo.max(r.0.lo), hi: part.hi.min(r.0.hi) };
-            self.add(axis, slab, first, last, part);
-        }
+        self.enter[first & (MAX_SLABS - 1)][axis] += 1;
+        self.leave[last & (MAX_SLABS - 1)][axis] += 1;
     }
 
     pub fn best_plane(&self, costs: &Costs) -> Option<SpatialPlane> {
