@@ -5,8 +5,10 @@ mod both;
 mod dist;
 mod fuzz;
 mod gallery;
+mod leaks;
 mod mutants;
 mod povray;
+mod sanitize;
 mod sh;
 mod test;
 mod tidy;
@@ -34,6 +36,8 @@ const CHORES: &[Chore] = &[
     },
     Chore { name: "fuzz", doc: "run every fuzz target [SECONDS each, 600]", run: fuzz::run },
     Chore { name: "mutants", doc: "mutation-test optics and the integrators [COUNT, 100]", run: mutants::run },
+    Chore { name: "sanitize", doc: "unsafe code under Miri and AddressSanitizer", run: sanitize::run },
+    Chore { name: "leaks", doc: "rays out of closed meshes, hits lost by a structure [COUNT, 10^8]", run: leaks::run },
     Chore { name: "dist", doc: "a stripped binary archive for people without a toolchain", run: dist::run },
     Chore { name: "docs", doc: "write the manual and the schema cut from the tables", run: dist::docs },
 ];

@@ -41,7 +41,16 @@ fn report(kind: AccelKind, name: &str, shape: Shape) {
         accel = Some(Accel::build(kind, scene.clone(), &Serial).expect("a sound scene"));
         best = best.min(seconds() - start);
     }
-    let accel = accel.expect("built");
+    let mut accel = accel.expect("built");
+    if kind.name().starts_with("bvh8") {
+        let mut file = Vec::new();
+        accel.save(&mut file).expect("room in memory");
+        let start = seconds();
+        accel = Accel::load(scene.clone(), &mut &file[..]).expect("what was saved");
+        let loaded = seconds();
+        accel.refit(scene.clone()).expect("the same scene");
+        println!("{name}: load {:.3} s, refit {:.3} s", loaded - start, seconds() - loaded);
+    }
     let s = accel.statistics();
     println!("{name}: {} primitives, build {best:.3} s", s.primitives);
     println!("  nodes {}, {} MB, SAH cost {:.2}, depth {}", s.nodes, s.bytes >> 20, s.sah_cost, s.depth);

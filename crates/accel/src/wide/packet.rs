@@ -191,19 +191,23 @@ unsafe fn pack<B: Backend>(
     let mut limit = soa.limit.iter().fold(f32::NEG_INFINITY, |m, l| if *l > m { *l } else { m });
     let mut place = tree.root;
     loop {
-        // SAFETY (all below): the tree's places lead to what they say; the caller promises the CPU.
         if place.is_node() {
             counters.nodes_visited += 1;
+            // SAFETY: the place is that of a node of this tree.
             let node: *const Node = unsafe { arena::get(ground.lines, place.line()) };
+            // SAFETY: the node is valid, and the caller promises the CPU.
             let mut keys = unsafe { B::packet_boxes(node, &frustum, limit) };
             // The farthest is put away first.
             let from = count;
             loop {
+                // SAFETY: the caller promises the CPU.
                 let (key, child) = unsafe { B::least(&keys) };
                 if key == super::backend::NO_KEY {
                     break;
                 }
+                // SAFETY: the caller promises the CPU.
                 keys = unsafe { B::without(&keys, child) }.0;
+                // SAFETY: the node is valid.
                 let inner = unsafe { (&(*node).children)[child & 7] };
                 waiting[count] = Waiting { place: inner, parent: place, child: child as u8, key };
                 count += 1;
@@ -224,7 +228,9 @@ unsafe fn pack<B: Backend>(
             if next.key > super::backend::key(limit) {
                 continue;
             }
+            // SAFETY: what waits has the node that it was found in as its parent.
             let parent: *const Node = unsafe { arena::get(ground.lines, next.parent.line()) };
+            // SAFETY: the node is valid, and the caller promises the CPU.
             let mut inside = unsafe { B::rays_in_box(parent, next.child as usize, &soa) };
             if inside == 0 {
                 continue;
@@ -237,6 +243,7 @@ unsafe fn pack<B: Backend>(
                 let r = inside.trailing_zeros() as usize;
                 inside &= inside - 1;
                 let Member { ray, search } = &mut members[r];
+                // SAFETY: what is no node is a leaf of this tree (it has no nodes of what moves), and the caller promises the CPU.
                 unsafe { test_leaf::<B, false>(next.place, ray, search, &ground) };
                 soa.limit[r] = ground.limit(ray, search);
             }

@@ -16,4 +16,5 @@ mod saved;
 mod semantics;
 mod solids;
 mod surfaces;
+mod tiny;
 mod watertight;
