@@ -157,14 +157,15 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         if n.nodes + n.leaves == 0 {
             return;
         }
-        // SAFETY (all below): slots in the lists were filled, and a list holds rays at places of its type; the caller promises
-        // the CPU. What stays in the list is written over what was already read.
+        // What stays in a list is written over what was already read.
         if n.nodes >= n.leaves {
             let count = core::mem::take(&mut n.nodes);
             counters.nodes_visited += count as u64;
             for i in 0..count {
                 let number = lists.nodes[i];
+                // SAFETY: slots in the lists were filled.
                 let walker = unsafe { &mut slots.get_unchecked_mut(number as usize).assume_init_mut().walker };
+                // SAFETY: this list holds rays at nodes; the caller promises the CPU.
                 unsafe { walker.step_node::<B, ANY>(&ground) };
                 prefetch(&ground, walker.place);
                 lists.sort(walker.place, number, &mut n);
@@ -173,13 +174,16 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
             let count = core::mem::take(&mut n.leaves);
             for i in 0..count {
                 let number = lists.leaves[i];
+                // SAFETY: slots in the lists were filled.
                 let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
+                // SAFETY: this list holds rays at leaves and nodes of what moves; the caller promises the CPU.
                 unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
                 prefetch(&ground, slot.walker.place);
                 lists.sort(slot.walker.place, number, &mut n);
             }
         }
         for &number in &lists.ended[..n.ended] {
+            // SAFETY: slots in the lists were filled.
             let search = unsafe { &slots[number as usize].assume_init_ref().search };
             *counters += search.counters;
             done(search.ray_index, search.best);
