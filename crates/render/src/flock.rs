@@ -44,6 +44,8 @@ pub(crate) struct Flock<'a, O: Observer> {
     /// Paths that wait, the youngest on top: memory stays bounded by depth and branching.
     waiting: Vec<Traveller>,
     active: Vec<Traveller>,
+    /// From here on, `active` are new camera rays.
+    first_from_camera: Option<usize>,
     shadows: Vec<(ShadowRay, usize)>,
     rays: Vec<Ray>,
     keys: Vec<u64>,
@@ -63,6 +65,7 @@ impl<'a, O: Observer> Flock<'a, O> {
             free: Vec::new(),
             waiting: Vec::new(),
             active: Vec::new(),
+            first_from_camera: None,
             shadows: Vec::new(),
             rays: Vec::new(),
             keys: Vec::new(),
@@ -79,10 +82,12 @@ impl<'a, O: Observer> Flock<'a, O> {
         loop {
             // Gather a flock: branches first, then new camera rays.
             self.active.clear();
+            self.first_from_camera = None;
             while self.active.len() < self.size {
                 if let Some(t) = self.waiting.pop() {
                     self.active.push(t);
                 } else if let Some((pixel, id)) = samples.next() {
+                    self.first_from_camera.get_or_insert(self.active.len());
                     self.launch(pixel, id);
                 } else {
                     break;
@@ -156,16 +161,22 @@ impl<'a, O: Observer> Flock<'a, O> {
                 RayKind::Glossy => self.statistics.glossy_rays += 1,
             }
         }
-        self.find_hits();
+        self.find_hits(self.first_from_camera.unwrap_or(self.active.len()));
         self.statistics.hits += self.hits.iter().flatten().count() as u64;
     }
 
-    fn find_hits(&mut self) {
+    /// Find what each ray hits; those from `first_coherent` on run close together.
+    fn find_hits(&mut self, first_coherent: usize) {
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
-        let filter = AlphaFilter { scene: self.renderer.scene, keys: &self.keys };
-        let search = &mut self.statistics.search;
-        self.renderer.scene.accel.closest_hits(&self.rays, Query::filtered(&filter), &mut self.hits, search);
+        let (scene, search) = (self.renderer.scene, &mut self.statistics.search);
+        let (strewn, together) = self.rays.split_at(first_coherent);
+        let (strewn_keys, together_keys) = self.keys.split_at(first_coherent);
+        let (strewn_hits, together_hits) = self.hits.split_at_mut(first_coherent);
+        let filter = AlphaFilter { scene, keys: strewn_keys };
+        scene.accel.closest_hits(strewn, Query::filtered(&filter), strewn_hits, search);
+        let filter = AlphaFilter { scene, keys: together_keys };
+        scene.accel.closest_hits_coherent(together, Query::filtered(&filter), together_hits, search);
     }
 
     fn step(&mut self, t: &Traveller, hit: Option<Hit>) {
@@ -211,7 +222,7 @@ impl<'a, O: Observer> Flock<'a, O> {
 
             // Plain ones want a yes or no; filtered ones walk from surface to surface.
             if shadows.iter().any(|(s, _)| s.is_filtered) {
-                self.find_hits();
+                self.find_hits(self.rays.len());
                 let mut next = Vec::new();
                 for (i, (s, slot)) in shadows.drain(..).enumerate() {
                     match self.hits[i] {

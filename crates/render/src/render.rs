@@ -67,8 +67,8 @@ pub(crate) struct Start {
 /// Samples per pass at most; the first passes are shorter, so that a picture appears soon.
 const LONGEST_PASS: u32 = 16;
 
-/// Tiles between two calls of `Control::between`.
-const TILES_PER_CHUNK: usize = 32;
+/// Tiles for each thread between two calls of `Control::between`.
+const TILES_PER_THREAD: usize = 16;
 
 impl Renderer<'_> {
     /// Bring every pixel of `film` to samples `samples`. Pixels that have some already (resumed, stopped) get the rest: a
@@ -80,9 +80,9 @@ impl Renderer<'_> {
         while done < samples.end {
             let taken = done - samples.start;
             let pass_end = done + taken.clamp(1, LONGEST_PASS).min(samples.end - done);
-            let tiles = film.tiles.len();
-            for first in (0..tiles).step_by(TILES_PER_CHUNK) {
-                let chunk = &mut film.tiles[first..(first + TILES_PER_CHUNK).min(tiles)];
+            let (tiles, at_once) = (film.tiles.len(), TILES_PER_THREAD * rayon::current_num_threads());
+            for first in (0..tiles).step_by(at_once) {
+                let chunk = &mut film.tiles[first..(first + at_once).min(tiles)];
                 let counted = chunk
                     .par_iter_mut()
                     .map(|tile| {
@@ -108,9 +108,9 @@ impl Renderer<'_> {
     fn render_tile<O: Observer>(&self, tile: &mut Tile, start: u32, end: u32, observer: &mut O) -> Statistics {
         let rect = tile.rect;
         let first = start + tile.counts.first().map_or(0, |c| c.taken);
-        let samples = (0..rect.area()).flat_map(move |pixel| {
-            let (x, y) = (rect.x0 + pixel as u32 % rect.width(), rect.y0 + pixel as u32 / rect.width());
-            (first..end).map(move |sample| (pixel, SampleId { x, y, sample }))
+        let samples = near_to_near(rect.width(), rect.height()).flat_map(move |(x, y)| {
+            let pixel = y as usize * rect.width() as usize + x as usize;
+            (first..end).map(move |sample| (pixel, SampleId { x: rect.x0 + x, y: rect.y0 + y, sample }))
         });
         Flock::new(self, self.flock, observer).run(tile, samples)
     }
@@ -179,6 +179,46 @@ impl Renderer<'_> {
     }
 }
 
+/// The places of a rectangle along a Z-curve (Morton 1966): what is near in the walk is near in the picture.
+fn near_to_near(width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
+    let edge = u64::from(width.max(height).next_power_of_two());
+    (0..edge * edge).map(|n| (even_bits(n), even_bits(n >> 1))).filter(move |&(x, y)| x < width && y < height)
+}
+
+/// Every other bit of `n`, the lowest first, moved together.
+fn even_bits(n: u64) -> u32 {
+    let mut x = n & 0x5555_5555_5555_5555;
+    for (shift, mask) in [
+        (1, 0x3333_3333_3333_3333),
+        (2, 0x0f0f_0f0f_0f0f_0f0f),
+        (4, 0x00ff_00ff_00ff_00ff),
+        (8, 0x0000_ffff_0000_ffff),
+        (16, 0xffff_ffff),
+    ] {
+        x = (x | x >> shift) & mask;
+    }
+    x as u32
+}
+
 const FILTER: u64 = of_name("filter");
 const LENS: u64 = of_name("lens");
 const TIME: u64 = of_name("time");
+
+#[cfg(test)]
+mod tests {
+    use super::near_to_near;
+
+    #[test]
+    fn a_walk_over_a_tile_takes_every_pixel_once_in_blocks() {
+        for (width, height) in [(1, 1), (32, 32), (5, 3), (32, 7)] {
+            let mut walk: Vec<_> = near_to_near(width, height).collect();
+            walk.sort_unstable();
+            let all: Vec<_> = (0..width).flat_map(|x| (0..height).map(move |y| (x, y))).collect();
+            assert_eq!(walk, all);
+        }
+        let walk: Vec<_> = near_to_near(32, 32).collect();
+        for block in walk.chunks(64) {
+            assert!(block.iter().all(|&(x, y)| (x / 8, y / 8) == (block[0].0 / 8, block[0].1 / 8)));
+        }
+    }
+}

@@ -103,7 +103,7 @@ pub struct Render {
     #[arg(long, value_name = "NAME")]
     tone: Option<String>,
     /// Rays that travel together
-    #[arg(long, value_name = "N", hide = true, default_value_t = 64, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", hide = true, default_value_t = 256, value_parser = clap::value_parser!(u16).range(1..))]
     pub flock: u16,
 }
 
