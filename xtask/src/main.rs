@@ -31,7 +31,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "povray", doc: "six scenes beside POV-Ray, picture against picture", run: povray::run },
     Chore {
         name: "bench",
-        doc: "time against POV-Ray, start to written image [--quick] [--json FILE]; `bench kernel`: rays against Embree",
+        doc: "renders against POV-Ray and Mitsuba [renders] [--quick] [--json FILE]; `bench kernel`: rays against Embree",
         run: bench::run,
     },
     Chore { name: "fuzz", doc: "run every fuzz target [SECONDS each, 600]", run: fuzz::run },
