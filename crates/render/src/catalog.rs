@@ -13,13 +13,13 @@ const BVH2: TypeSpec = TypeSpec {
 const BVH8: TypeSpec = TypeSpec {
     kind: Kind::Accelerator,
     name: "bvh8",
-    doc: "Bounding-volume hierarchy with eight children to a node and eight triangles to a leaf, tested at once; built by the surface-area heuristic. The default.",
+    doc: "Bounding-volume hierarchy with eight children to a node and eight triangles to a leaf, tested at once; built by the surface-area heuristic. The default for pictures.",
     params: &[],
 };
 const BVH8_FAST: TypeSpec = TypeSpec {
     kind: Kind::Accelerator,
     name: "bvh8_fast",
-    doc: "`bvh8`, built along a Morton curve in a fraction of the time: for scenes that move.",
+    doc: "`bvh8`, built along a Morton curve in a fraction of the time. The default for frames of films in which something moves.",
     params: &[],
 };
 const BVH8_BEST: TypeSpec = TypeSpec {

@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::catalog::{ACCELERATORS, catalog};
 use crate::film::filter::Filter;
 use crate::film::{AovSet, FilmLayout, Rect};
-use crate::frames::{bad_geometry, frame_time};
+use crate::frames::{bad_geometry, frame_time, is_moving};
 use crate::integrators::whitted::Whitted;
 use crate::integrators::{Integrator, MediumStack};
 use crate::lights::{AreaLight, Lamp, LightEntry, ambient_radiance, area_growth};
@@ -257,8 +257,15 @@ fn compile(
             .collect(),
         shutter: (open, close),
     };
-    let kind_name = singles.params(Kind::Accelerator).spec().name;
-    let kind = ACCELERATORS.iter().find(|a| a.0.name == kind_name).map_or(AccelKind::default(), |a| a.1);
+    let is_built_anew = time.is_some() && is_moving(&scene_geometry);
+    let kind = match d.single(Kind::Accelerator) {
+        // Whoever builds for every frame builds quickly; the hits are the same.
+        None if is_built_anew => AccelKind::Bvh8Fast,
+        _ => {
+            let name = singles.params(Kind::Accelerator).spec().name;
+            ACCELERATORS.iter().find(|a| a.0.name == name).map_or(AccelKind::default(), |a| a.1)
+        }
+    };
     let accel = Accel::build(kind, scene_geometry, &Threads).map_err(bad_geometry)?;
 
     if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {

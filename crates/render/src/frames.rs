@@ -1,8 +1,8 @@
 //! Films: one prepared scene, frame after frame.
 //!
 //! Only what depends on the moment is made anew: when the shutter opens, the bodies that the camera is inside of, and, where
-//! something moves, the accelerator. Meshes, textures, materials, lights and places stay. A frame is the same to the bit
-//! whichever frames came before it.
+//! something moves, the accelerator: a quickly built one, unless the scene names another. Meshes, textures, materials, lights
+//! and places stay. A frame is the same to the bit whichever frames came before it.
 
 use crate::camera::CameraSample;
 use crate::compile_scene::{Prepared, Threads};
@@ -29,14 +29,18 @@ impl Prepared {
 
 /// The accelerator for another shutter: as it is where nothing moves, else built anew, the old one gone first.
 fn accel_for_shutter(accel: Accel, shutter: (f64, f64)) -> Result<Accel, AccelError> {
-    let scene = accel.scene_geometry();
-    let mut instances = scene.instances.iter().chain(scene.aggregates.iter().flat_map(|a| &a.instances));
-    if !instances.any(|i| i.outer_from_object.is_moving()) {
+    if !is_moving(accel.scene_geometry()) {
         return Ok(accel);
     }
-    let (kind, scene) = (accel.kind(), SceneGeometry { shutter, ..scene.clone() });
+    let (kind, scene) = (accel.kind(), SceneGeometry { shutter, ..accel.scene_geometry().clone() });
     drop(accel);
     Accel::build(kind, scene, &Threads)
+}
+
+/// True when what rays hit depends on the moment.
+pub(crate) fn is_moving(scene: &SceneGeometry) -> bool {
+    let mut instances = scene.instances.iter().chain(scene.aggregates.iter().flat_map(|a| &a.instances));
+    instances.any(|i| i.outer_from_object.is_moving())
 }
 
 /// What the user is told of geometry that cannot be searched.

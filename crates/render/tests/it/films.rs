@@ -1,6 +1,7 @@
 //! Films: each frame a picture of its own, whichever came before.
 
 use crate::support::{expose, prepared_with};
+use kirkas_accel::AccelKind;
 use kirkas_render::{Film, Options, Prepared};
 
 /// A camera that flies through a moving ball of glass, past a mirror that turns in a moving group, above a lamp that moves.
@@ -145,6 +146,18 @@ fn where_nothing_moves_nothing_is_built_anew() {
         let first = at_frame(&scene, Some(0));
         let before = place(&first);
         assert_eq!(place(&first.at_frame(1).expect("it can be built")) == before, is_still);
+    }
+}
+
+#[test]
+fn frames_of_what_moves_are_built_quickly_unless_the_scene_names_a_structure() {
+    let kind = |toml: &str, frame| at_frame(toml, frame).scene.accel.kind();
+    assert_eq!(kind(MOVING, Some(0)), AccelKind::Bvh8Fast);
+    assert_eq!(kind(MOVING, None), AccelKind::Bvh8);
+    assert_eq!(kind(&still(), Some(0)), AccelKind::Bvh8);
+    for name in ["bvh8", "kd_tree"] {
+        let named = format!("{MOVING}\n[accelerator]\ntype = \"{name}\"\n");
+        assert_eq!(kind(&named, Some(0)).name(), name);
     }
 }
 
