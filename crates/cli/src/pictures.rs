@@ -10,6 +10,7 @@ use kirkas_images::{
     ExrCompression, ImageError, RgbImage, Texts, ToneCurve, to_srgb8, write_exr, write_hdr, write_png8,
 };
 use kirkas_render::Film;
+use kirkas_render::film::TILE;
 use kirkas_render::film::image::Depth;
 use kirkas_render::film::part::write_part;
 use kirkas_scene::Diagnostic;
@@ -35,7 +36,7 @@ impl Development {
         let header = self.told(header);
         for file in files {
             let bytes = match file.format {
-                PictureFormat::Png => self.png(&film.to_rgb(), &header.texts()),
+                PictureFormat::Png => self.png(film, &header.texts()),
                 PictureFormat::Hdr => write_hdr(&film.to_rgb(), &header.texts()),
                 PictureFormat::Exr => self.exr(film, &header),
             };
@@ -68,12 +69,18 @@ impl Development {
         all
     }
 
-    fn png(&self, rgb: &RgbImage, texts: &Texts) -> Result<Vec<u8>, ImageError> {
-        let codes = match ToneCurve::from_name(&self.tone) {
-            Some(curve) => to_srgb8(rgb, self.exposure, curve),
-            None => raw_codes(rgb, self.exposure),
-        };
-        write_png8(rgb.width, rgb.height, &codes, texts)
+    fn png(&self, film: &Film, texts: &Texts) -> Result<Vec<u8>, ImageError> {
+        // Band by band, so that the picture is never there as floats.
+        let (curve, size) = (ToneCurve::from_name(&self.tone), film.layout.crop);
+        let mut codes = Vec::with_capacity(3 * size.area());
+        for top in (0..size.height()).step_by(TILE as usize) {
+            let band = film.rows_to_rgb(top..(top + TILE).min(size.height()));
+            codes.extend(match curve {
+                Some(curve) => to_srgb8(&band, self.exposure, curve),
+                None => raw_codes(&band, self.exposure),
+            });
+        }
+        write_png8(size.width(), size.height(), &codes, texts)
     }
 
     fn exr(&self, film: &Film, header: &Header) -> Result<Vec<u8>, ImageError> {

@@ -2,6 +2,7 @@
 
 use super::aov::AOVS;
 use super::{Film, Tile};
+use core::ops::Range;
 use kirkas_images::{ChannelData, Image, RgbImage, Window};
 
 /// How floats are stored.
@@ -16,12 +17,22 @@ pub enum Depth {
 impl Film {
     /// The beauty image of the crop.
     pub fn to_rgb(&self) -> RgbImage {
-        let c = self.layout.crop;
-        let mut image = RgbImage { width: c.width(), height: c.height(), pixels: vec![[0.0; 3]; c.area()] };
-        for (x, y, tile, i) in self.pixels() {
-            image.pixels[self.index(x, y)] = tile.mean(i);
+        self.rows_to_rgb(0..self.layout.crop.height())
+    }
+
+    /// These rows of the crop's beauty image, counted from its top.
+    pub fn rows_to_rgb(&self, rows: Range<u32>) -> RgbImage {
+        let (c, width) = (self.layout.crop, self.layout.crop.width() as usize);
+        let mut pixels = vec![[0.0; 3]; width * rows.len()];
+        let is_near = |t: &&Tile| t.rect.y0 < c.y0 + rows.end && c.y0 + rows.start < t.rect.y1;
+        for (tile, i) in self.tiles.iter().filter(is_near).flat_map(|t| (0..t.rect.area()).map(move |i| (t, i))) {
+            let (dx, dy) = (i as u32 % tile.rect.width(), i as u32 / tile.rect.width());
+            let (x, y) = (tile.rect.x0 + dx - c.x0, tile.rect.y0 + dy - c.y0);
+            if rows.contains(&y) {
+                pixels[(y - rows.start) as usize * width + x as usize] = tile.mean(i);
+            }
         }
-        image
+        RgbImage { width: c.width(), height: rows.len() as u32, pixels }
     }
 
     /// All layers: beauty, light groups, AOVs. AOVs that are numbers stay 32 bits wide.
@@ -89,4 +100,27 @@ impl Film {
 /// Dots separate layers in EXR, so names keep none.
 pub fn layer_name(group: &str) -> String {
     group.replace('.', "_")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{FilmLayout, Rect};
+
+    #[test]
+    fn bands_of_rows_are_the_rows_of_the_picture() {
+        let crop = Rect { x0: 5, y0: 3, x1: 45, y1: 70 };
+        let mut film = Film::new(FilmLayout { size: (80, 80), crop, groups: Vec::new(), aovs: Default::default() });
+        for tile in &mut film.tiles {
+            for (i, sum) in tile.sums.iter_mut().enumerate() {
+                let (x, y) = (tile.rect.x0 + i as u32 % tile.rect.width(), tile.rect.y0 + i as u32 / tile.rect.width());
+                *sum = [i128::from(100 * y + x) << 64; 3];
+            }
+        }
+        for rows in [0..67, 0..1, 20..50, 29..30, 61..67, 4..4] {
+            let band = film.rows_to_rgb(rows.clone());
+            let expected: Vec<_> = rows.flat_map(|y| (5..45).map(move |x| [(100 * (y + 3) + x) as f32; 3])).collect();
+            assert_eq!(band.pixels, expected);
+        }
+    }
 }
