@@ -1,12 +1,12 @@
 //! The sphereflake of 66,430 spheres, for each that renders it.
 
-use super::renders::{Case, LIT_HEAD, LIT_POV_HEAD, mitsuba_head, write};
+use super::renders::{Case, LIT_HEAD, LIT_POV_HEAD, SCALAR, mitsuba_head, write};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// 66,430 mirror spheres over a floor, at most five bounces.
 pub fn lit(folder: &Path, depth: u32) -> Result<Case, String> {
-    let case = Case { name: "flake", folder: folder.into(), has_pov: true, has_mitsuba: false };
+    let case = Case { name: "flake", folder: folder.into(), has_pov: true, mitsuba: &[] };
     let toml = format!(
         "{LIT_HEAD}[integrator]\nmax_depth = 5\nmin_contribution = 0.004\n\
          [cameras.main]\ntype = \"perspective\"\nposition = [2.1, 1.3, 1.7]\nlook_at = [0, 0, 0]\nfov = 45\nfov_axis = \"horizontal\"\n\
@@ -32,7 +32,7 @@ pub fn lit(folder: &Path, depth: u32) -> Result<Case, String> {
 
 /// Its mirrors alone under a plain sky: work that is the same for all, at most five bounces.
 pub fn mirrors(folder: &Path, depth: u32) -> Result<Case, String> {
-    let case = Case { name: "mirrors", folder: folder.into(), has_pov: true, has_mitsuba: true };
+    let case = Case { name: "mirrors", folder: folder.into(), has_pov: true, mitsuba: &[SCALAR] };
     let toml = format!(
         "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 4\n[integrator]\nmax_depth = 5\n\
          [background]\ncolor = [0.35, 0.5, 0.7]\n\

@@ -1,6 +1,6 @@
 //! A displaced sphere of a million triangles, for each that renders it.
 
-use super::renders::{Case, LIT_HEAD, LIT_POV_HEAD, mitsuba_head, write};
+use super::renders::{COMPILED, Case, LIT_HEAD, LIT_POV_HEAD, SCALAR, mitsuba_head, write};
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// A displaced sphere of `n^2` triangles over a floor, under a lamp: a million for n = 1000.
 pub fn lit(folder: &Path, n: usize) -> Result<Case, String> {
-    let case = Case { name: "mesh", folder: folder.into(), has_pov: true, has_mitsuba: false };
+    let case = Case { name: "mesh", folder: folder.into(), has_pov: true, mitsuba: &[] };
     let (points, faces) = displaced_sphere(n);
     write_ply(&folder.join("mesh.ply"), &points, &faces).map_err(|e| e.to_string())?;
     let toml = format!(
@@ -39,7 +39,7 @@ pub fn lit(folder: &Path, n: usize) -> Result<Case, String> {
 
 /// The mesh of [`lit`] under a plain sky, of rough metal, so that paths go on from surface to surface: eight bounces, 16 samples.
 pub fn under_a_sky(folder: &Path, n: usize) -> Result<Case, String> {
-    let case = Case { name: "sky", folder: folder.into(), has_pov: false, has_mitsuba: true };
+    let case = Case { name: "sky", folder: folder.into(), has_pov: false, mitsuba: &[SCALAR, COMPILED] };
     let (points, faces) = displaced_sphere(n);
     write_ply(&folder.join("mesh.ply"), &points, &faces).map_err(|e| e.to_string())?;
     let toml = "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 16\n\

@@ -7,7 +7,7 @@ mod renders;
 
 use crate::sh::{self, Outcome, cargo};
 
-/// `cargo xtask bench [renders|kernel] [--quick] [--json FILE]`
+/// `cargo xtask bench [renders|kernel] [--quick] [--runs N] [--json FILE]`
 pub fn run(args: &[String]) -> Outcome {
     match args.split_first().map(|(first, rest)| (first.as_str(), rest)) {
         Some(("kernel", rest)) => kernel(rest),

@@ -17,7 +17,8 @@ pub struct Case {
     pub name: &'static str,
     pub folder: PathBuf,
     pub has_pov: bool,
-    pub has_mitsuba: bool,
+    /// The variants of Mitsuba that render it.
+    pub mitsuba: &'static [&'static str],
 }
 
 /// Edge of every picture.
@@ -49,7 +50,7 @@ impl Case {
     }
 }
 
-/// `cargo xtask bench renders`
+/// `cargo xtask bench renders [--quick] [--runs N] [--json FILE]`
 pub fn run(args: &[String]) -> Outcome {
     let quick = args.iter().any(|a| a == "--quick");
     let json = args.iter().position(|a| a == "--json").and_then(|i| args.get(i + 1));
@@ -66,22 +67,23 @@ pub fn run(args: &[String]) -> Outcome {
         mesh::under_a_sky(&folder, n)?,
     ];
     let (meter, mut rows) = (Meter::new(), Vec::new());
+    let count = args.iter().position(|a| a == "--runs").and_then(|i| args.get(i + 1)?.parse().ok());
     for case in &cases {
         let mut contestants = vec![("kirkas", case.kirkas(&kirkas))];
         if case.has_pov && has_povray {
             contestants.push(("povray", case.povray()));
         }
-        if case.has_mitsuba && has_mitsuba {
-            contestants.extend(VARIANTS.map(|v| (v, case.mitsuba(&mitsuba, v))));
+        if has_mitsuba {
+            contestants.extend(case.mitsuba.iter().map(|v| (*v, case.mitsuba(&mitsuba, v))));
         }
         let mut runs = vec![Vec::new(); contestants.len()];
-        for _ in 0..if quick { 1 } else { 5 } {
+        for _ in 0..count.unwrap_or(if quick { 1 } else { 5 }) {
             // Interleaved, so that all see the same weather.
             for ((name, command), runs) in contestants.iter().zip(&mut runs) {
                 match meter.run(command) {
                     Ok(m) => runs.push(m),
                     // A Mitsuba without its compiler is as good as none.
-                    Err(_) if VARIANTS.contains(name) => {}
+                    Err(_) if *name == COMPILED => {}
                     Err(e) => return Err(e),
                 }
             }
@@ -98,8 +100,10 @@ pub fn run(args: &[String]) -> Outcome {
     Ok(())
 }
 
-/// Mitsuba interpreting, and compiling.
-const VARIANTS: [&str; 2] = ["scalar_rgb", "llvm_ad_rgb"];
+/// The variant of Mitsuba that takes one ray after the other.
+pub const SCALAR: &str = "scalar_rgb";
+/// The one that compiles its kernels (and keeps them for the next run).
+pub const COMPILED: &str = "llvm_ad_rgb";
 
 fn table_row(scene: &str, ours: Measured, all: &[(&str, Option<Measured>)]) -> String {
     let cell = |(name, m): &(&str, Option<Measured>)| {
