@@ -114,7 +114,7 @@ pub(crate) fn gather_unbounded(geometries: &[Geometry], instances: &[PlacedInsta
 mod tests {
     use super::*;
     use crate::Serial;
-    use crate::build::testing::Threads;
+    use crate::build::testing::Backwards;
     use crate::scene_geometry::Sphere;
     use kirkas_geometry::Vec3;
     use std::sync::Arc;
@@ -141,7 +141,7 @@ mod tests {
         let level = level();
         let expected = bits(&gather_what_is_bounded(&level, &[]));
         assert!(bits(&gather(&level, &[], &Serial)) == expected);
-        assert!(bits(&gather(&level, &[], &Threads)) == expected);
+        assert!(bits(&gather(&level, &[], &Backwards)) == expected);
     }
 
     /// Corners so far out that the box is infinite.

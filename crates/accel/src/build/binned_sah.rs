@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use crate::Serial;
     use crate::build::partition::CHUNK;
-    use crate::build::testing::{Threads, random_boxes};
+    use crate::build::testing::{Backwards, random_boxes};
     use kirkas_geometry::{Bounds3, Vec3};
 
     /// Boxes of which every split peels off a few, begun so deep that the room for it runs out.
@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn the_tree_is_the_same_whatever_the_executor() {
         for costs in [Costs::BVH2, Costs::WIDE, Costs::INSTANCES] {
-            let [a, b]: [&dyn Executor; 2] = [&Serial, &Threads];
+            let [a, b]: [&dyn Executor; 2] = [&Serial, &Backwards];
             let [a, b] = [a, b].map(|e| build(random_boxes(5 * CHUNK + 77, 1), &costs, e));
             let node = |n: &Node| (n.planes.map(|p| p.map(|s| s.map(f32::to_bits))), n.children);
             assert!(a.nodes.iter().map(node).eq(b.nodes.iter().map(node)) && a.root == b.root);

@@ -262,7 +262,7 @@ mod tests {
     use crate::build::binned_sah;
     use crate::build::costs::Costs as SplitCosts;
     use crate::build::reference::Reference;
-    use crate::build::testing::{Threads, random_boxes};
+    use crate::build::testing::{Backwards, random_boxes};
 
     const COSTS: Costs = Costs { node: 1.0, block: 0.7, listed: 0.2 };
 
@@ -435,7 +435,7 @@ mod tests {
     fn the_executor_does_not_show() {
         let tree = tree(60_000, 11);
         assert!(tree.nodes.len() > 2 * FORK_ABOVE);
-        let [a, b]: [&dyn Executor; 2] = [&Serial, &Threads];
+        let [a, b]: [&dyn Executor; 2] = [&Serial, &Backwards];
         let [a, b] = [a, b].map(|e| Collapse::new(&tree, COSTS, &is_list, e).entries);
         let bits = |e: &Entry| (e.cost.map(f32::to_bits), e.below);
         assert!(a.iter().map(bits).eq(b.iter().map(bits)));

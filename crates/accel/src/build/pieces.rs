@@ -151,7 +151,7 @@ mod tests {
     use crate::Serial;
     use crate::build::binned_sah;
     use crate::build::costs::Costs;
-    use crate::build::testing::{Threads, assert_sound, random_boxes};
+    use crate::build::testing::{Backwards, assert_sound, random_boxes};
     use kirkas_geometry::Bounds3;
 
     /// A tree over each part, and nodes above: `((0 1) 2)`.
@@ -173,7 +173,7 @@ mod tests {
         for (first, second) in [(100, 300), (1, 2), (7, 499)] {
             let parts = || [&references[..first], &references[first..second], &references[second..]];
             assert_sound(&forked(parts()).into_tree(&Serial), &references);
-            assert_sound(&forked(parts()).into_tree(&Threads), &references);
+            assert_sound(&forked(parts()).into_tree(&Backwards), &references);
         }
     }
 }

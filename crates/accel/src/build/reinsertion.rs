@@ -281,7 +281,7 @@ mod tests {
     use super::*;
     use crate::Serial;
     use crate::build::costs::Costs;
-    use crate::build::testing::{Threads, assert_sound, bits, random_boxes};
+    use crate::build::testing::{Backwards, assert_sound, bits, random_boxes};
     use crate::build::{binned_sah, morton};
     use kirkas_geometry::{Bounds3, Vec3};
 
@@ -375,7 +375,7 @@ mod tests {
     fn the_executor_does_not_show() {
         let tree = || halved(random_boxes(20_000, 1));
         let effort = Effort { rounds: 2, at_least: 1000, one_in: 10 };
-        let [serial, threads] = [&Serial as &dyn Executor, &Threads].map(|e| improve(tree(), effort, e));
+        let [serial, threads] = [&Serial as &dyn Executor, &Backwards].map(|e| improve(tree(), effort, e));
         assert!(bits(&serial) == bits(&threads));
     }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::Serial;
 use crate::build::binary::MAX_DEPTH;
 use crate::build::binned_sah;
-use crate::build::testing::Threads;
+use crate::build::testing::Backwards;
 use crate::triangle;
 use kirkas_geometry::elementary::sin_cos_f32;
 use kirkas_geometry::hash::{combine, unit_f32};
@@ -104,7 +104,7 @@ fn every_point_of_a_triangle_is_in_a_leaf_that_holds_it() {
 #[test]
 fn the_executor_does_not_show_and_the_room_suffices() {
     let triangles = soup(3 * FORK_ABOVE, 3);
-    let [a, b]: [&dyn Executor; 2] = [&Serial, &Threads];
+    let [a, b]: [&dyn Executor; 2] = [&Serial, &Backwards];
     let [a, b] = [a, b].map(|e| cut(&triangles, e));
     let node = |n: &Node| (n.planes.map(|p| p.map(|s| s.map(f32::to_bits))), n.children);
     assert!(a.nodes.iter().map(node).eq(b.nodes.iter().map(node)) && a.root == b.root);

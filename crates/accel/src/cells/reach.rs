@@ -18,7 +18,7 @@ pub(crate) fn growth(root: &Bounds3) -> f64 {
 /// By how much the cells along a ray are to be grown: 0 for near rays, infinity for what must see every cell.
 pub(crate) fn thickness(ray: &Ray, root: &Bounds3) -> f32 {
     let distance = (ray.origin - root.min).abs().max((root.max - ray.origin).abs()).max_element();
-    let (tiny, speed, huge) = (2_f32.powi(-40), ray.direction.abs().max_element(), 2_f32.powi(60));
+    let (tiny, speed, huge) = (1e-12_f32, ray.direction.abs().max_element(), 1e18_f32);
     let sound = distance >= tiny && distance <= huge && speed >= tiny && speed <= huge;
     if !sound {
         f32::INFINITY

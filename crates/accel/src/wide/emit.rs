@@ -249,7 +249,7 @@ fn finish_node(own: &mut [MaybeUninit<Line>], children: impl Iterator<Item = (Bo
 #[cfg(test)]
 mod tests {
     use crate::Executor;
-    use crate::build::testing::Threads;
+    use crate::build::testing::Backwards;
     use crate::scene_geometry::{Geometry, Shape, Sphere};
     use crate::wide::{Quality, Tree};
     use crate::{Accel, AccelKind, SceneGeometry, Serial};
@@ -281,7 +281,7 @@ mod tests {
     fn the_executor_does_not_show() {
         let level = [triangles(30_000), spheres(10_000)];
         for quality in [Quality::Fast, Quality::Default, Quality::Best, Quality::Compact] {
-            let [a, b] = [&Serial as &dyn Executor, &Threads].map(|e| Tree::build(quality, &level, &[], e));
+            let [a, b] = [&Serial as &dyn Executor, &Backwards].map(|e| Tree::build(quality, &level, &[], e));
             assert!(a.lines.iter().map(|l| l.0).eq(b.lines.iter().map(|l| l.0)) && a.root == b.root);
             assert_eq!(a.validate(&level, &[]), Ok(()));
         }

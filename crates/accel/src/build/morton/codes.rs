@@ -148,7 +148,7 @@ fn as_atomics(keys: &mut [Key]) -> &[AtomicU64] {
 mod tests {
     use super::*;
     use crate::Serial;
-    use crate::build::testing::{Threads, random_boxes};
+    use crate::build::testing::{Backwards, random_boxes};
 
     #[test]
     fn spreading_puts_bit_i_at_3i() {
@@ -165,7 +165,7 @@ mod tests {
         let mut indices: Vec<usize> = keys.iter().map(|k| index(*k)).collect();
         indices.sort_unstable();
         assert!(indices.into_iter().eq(0..references.len()));
-        assert_eq!(sorted(&references, &Threads), keys);
+        assert_eq!(sorted(&references, &Backwards), keys);
         assert_eq!(sorted_again(&references, 0..references.len()), Some(keys));
     }
 }

@@ -45,7 +45,7 @@ fn plant(references: &[Reference], executor: &dyn Executor) -> (Vec<Grove>, Vec<
 mod tests {
     use super::*;
     use crate::Serial;
-    use crate::build::testing::{Threads, assert_sound, bits, random_boxes};
+    use crate::build::testing::{Backwards, assert_sound, bits, random_boxes};
     use kirkas_geometry::{Bounds3, Vec3};
 
     fn boxes(count: usize, of: impl Fn(usize) -> (Vec3, f32)) -> Vec<Reference> {
@@ -67,7 +67,7 @@ mod tests {
     #[test]
     fn the_executor_does_not_show() {
         let references = random_boxes(5 * GROVE, 8);
-        let [serial, threads] = [&Serial as &dyn Executor, &Threads].map(|e| build(references.clone(), e));
+        let [serial, threads] = [&Serial as &dyn Executor, &Backwards].map(|e| build(references.clone(), e));
         assert!(bits(&serial) == bits(&threads));
     }
 
