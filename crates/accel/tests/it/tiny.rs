@@ -41,7 +41,9 @@ fn tiny_scenes_are_searched_in_every_way() {
     assert!(expected.iter().flatten().count() > 5);
     let mut still = scene.clone();
     still.aggregates[0].geometries.pop();
-    for (kind, name) in AccelKind::ALL {
+    // An interpreter is slow: it walks through what has unsafe code.
+    let searched = |name: &str| !cfg!(miri) || ["bvh8", "bvh8_best", "bvh8_compact"].contains(&name);
+    for (kind, name) in AccelKind::ALL.into_iter().filter(|(_, name)| searched(name)) {
         // Without what moves, packets stay together.
         assert_same_batches(&build(kind, &still), &rays, Query::ALL, &{
             let brute = build(AccelKind::BruteForce, &still);
