@@ -51,7 +51,9 @@ impl Backend for Avx2 {
         // SAFETY: the caller promises AVX2 and FMA, a valid block and a lane of it.
         let t = unsafe { distance(block, lane, ray) }?;
         let weights = weights.of(lane);
-        let (u, v) = triangle::barycentric(weights, || (unsafe { (*block).triangle(lane) }, *ray))?;
+        // SAFETY: as above.
+        let corners = || unsafe { (*block).triangle(lane) };
+        let (u, v) = triangle::barycentric(weights, || (corners(), *ray))?;
         Some((t, u, v))
     }
 
