@@ -227,3 +227,23 @@ impl<H: Highlight> Scatter for Body<H> {
         self.ambient
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn priorities_may_be_below_and_above_that_of_others() {
+        let row = ROWS.iter().find(|row| row.name == "priority").unwrap();
+        assert!(row.range.0 <= -1000.0 && row.range.1 >= 1000.0, "{:?}", row.range);
+        assert_eq!(row.fallback, Fallback::Number(0.0));
+    }
+
+    #[test]
+    fn what_is_seen_from_the_rim_lies_above_it() {
+        let v = Vec3::new(0.5, 0.25, 0.75);
+        assert_eq!(upper(v, Vec3::X), v);
+        assert_eq!(upper(v, Vec3::new(0.6, 0.0, 0.8)), v);
+        assert_eq!(upper(v, Vec3::new(0.6, 0.0, -0.8)), Vec3::new(0.5, 0.25, -0.75));
+    }
+}
