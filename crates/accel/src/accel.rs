@@ -41,7 +41,8 @@ pub struct Statistics {
     pub instances: usize,
     /// Memory of the structure, without the scene's own arrays.
     pub bytes: usize,
-    /// Expected cost of a random ray through the world's tree (surface-area heuristic; a primitive test costs 1, a node visit 2).
+    /// Expected cost of a random ray through the world's tree (surface-area heuristic; the prices
+    /// of tests and visits are those of its structure).
     pub sah_cost: f64,
     /// Levels of the deepest tree.
     pub depth: usize,
@@ -199,8 +200,8 @@ impl Accel {
         }
     }
 
-    /// Check every invariant of the trees: each primitive in exactly one leaf, each box around all below it, depth within
-    /// the stack. Says what is wrong first.
+    /// Check every invariant of the trees: each primitive where rays look for it, all bounds around what is below them,
+    /// depth within the stack. Says what is wrong first.
     pub fn validate(&self) -> Result<(), String> {
         let world = &self.world;
         world.structure.validate(&self.scene.world, &world.instances).map_err(|e| format!("world: {e}"))?;

@@ -14,7 +14,7 @@ pub enum AccelKind {
     Bvh8Fast,
     /// The same with spatial splits, built in two to four times the time: for scenes that are looked at for long.
     Bvh8Best,
-    /// The same in a third of the memory, at half the speed.
+    /// The same in about a third of the memory, slower to trace.
     Bvh8Compact,
     /// A binary tree of spheres.
     SphereHierarchy,

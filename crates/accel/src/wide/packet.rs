@@ -13,6 +13,7 @@ use crate::hit::{Counters, Hit};
 use crate::prepared_ray::PreparedRay;
 use crate::search::{Enter, Search};
 use core::mem::MaybeUninit;
+use core::ops::Range;
 
 /// Rays in a packet.
 pub(super) const PACKET: usize = 64;
@@ -81,19 +82,19 @@ impl Tree {
         counters: &mut Counters,
         mut done: impl FnMut(usize, Option<Hit>),
     ) {
-        for (chunk, rays) in batch.rays.chunks(PACKET).enumerate() {
-            let first = chunk * PACKET;
-            if !self.has_packet(batch, rays, first, enter, counters, &mut done) {
-                self.search_slice(batch, first..first + rays.len(), enter, counters, &mut done);
+        for first in (0..batch.rays.len()).step_by(PACKET) {
+            let range = first..batch.rays.len().min(first + PACKET);
+            if !self.search_packet(batch, range.clone(), enter, counters, &mut done) {
+                self.search_slice(batch, range, enter, counters, &mut done);
             }
         }
     }
 
-    fn has_packet(
+    /// Search for one packet; false (and nothing done) when its rays are not of one mind.
+    fn search_packet(
         &self,
         batch: &Batch,
-        rays: &[kirkas_geometry::Ray],
-        first: usize,
+        range: Range<usize>,
         enter: Enter<false>,
         counters: &mut Counters,
         done: &mut dyn FnMut(usize, Option<Hit>),
@@ -101,10 +102,10 @@ impl Tree {
         #[cfg(target_arch = "x86_64")]
         if self.has_avx2 {
             // SAFETY: `has_avx2` is only set where it was detected.
-            return unsafe { pack_avx2(self, batch, rays, first, enter, counters, done) };
+            return unsafe { pack_avx2(self, batch, range, enter, counters, done) };
         }
         // SAFETY: portable code needs nothing.
-        unsafe { pack::<Portable>(self, batch, rays, first, enter, counters, done) }
+        unsafe { pack::<Portable>(self, batch, range, enter, counters, done) }
     }
 }
 
@@ -113,14 +114,13 @@ impl Tree {
 unsafe fn pack_avx2(
     tree: &Tree,
     batch: &Batch,
-    rays: &[kirkas_geometry::Ray],
-    first: usize,
+    range: Range<usize>,
     enter: Enter<false>,
     counters: &mut Counters,
     done: &mut dyn FnMut(usize, Option<Hit>),
 ) -> bool {
     // SAFETY: AVX2 and FMA are enabled here.
-    unsafe { pack::<super::avx2::Avx2>(tree, batch, rays, first, enter, counters, done) }
+    unsafe { pack::<super::avx2::Avx2>(tree, batch, range, enter, counters, done) }
 }
 
 /// Search for a packet; false (and nothing done) when its rays are not of one mind.
@@ -131,12 +131,12 @@ unsafe fn pack_avx2(
 unsafe fn pack<B: Backend>(
     tree: &Tree,
     batch: &Batch,
-    rays: &[kirkas_geometry::Ray],
-    first: usize,
+    range: Range<usize>,
     enter: Enter<false>,
     counters: &mut Counters,
     done: &mut dyn FnMut(usize, Option<Hit>),
 ) -> bool {
+    let rays = &batch.rays[range.clone()];
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
     if !tree.root.is_node() || tree.is_moving {
         return false;
@@ -176,7 +176,7 @@ unsafe fn pack<B: Backend>(
         soa.t_min[r] = prepared.clipped.t_min;
         soa.limit[r] = prepared.clipped.t_max;
         frustum.t_min = frustum.t_min.min(prepared.clipped.t_min);
-        let mut search = Search::new(ray, first + r, batch.query);
+        let mut search = Search::new(ray, range.start + r, batch.query);
         for record in &tree.unbounded {
             record.test(batch.level, &prepared, &mut search, enter);
         }
