@@ -28,6 +28,12 @@ impl Light {
         self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
     }
 
+    /// All lanes together.
+    #[inline]
+    pub fn sum(self) -> f64 {
+        self.0.iter().map(|&x| f64::from(x)).sum()
+    }
+
     /// True when every lane is 0.
     #[inline]
     pub fn is_black(self) -> bool {

@@ -1,7 +1,13 @@
-//! Backgrounds: what rays see that hit nothing. They are seen by camera, mirror and refraction rays; `whitted` does not
-//! light surfaces with them.
+//! Backgrounds: what rays see that hit nothing. Camera, mirror and refraction rays see them; `path` lights surfaces with them as
+//! well, `whitted` does not.
+//!
+//! A background is sampled exactly in proportion to what it sends (all lanes together): it is linear in the sine of the elevation
+//! between stops, and so is the density.
 
-use kirkas_geometry::Vec3;
+use crate::lights::LightSample;
+use core::f64::consts::{PI, TAU};
+use kirkas_geometry::elementary::{cos, sin};
+use kirkas_geometry::{DVec3, Vec3};
 use kirkas_optics::{Lanes, Light};
 use kirkas_scene::params::read_color;
 use kirkas_scene::{Fallback, Kind, Node, ParamSpec, ParamType, Params, TypeSpec};
@@ -35,16 +41,23 @@ pub const GRADIENT: TypeSpec = TypeSpec {
 
 /// A compiled background.
 #[derive(Clone, Debug)]
-pub enum Background {
-    /// One radiance.
-    Constant(Light),
-    /// Stops by sine of elevation.
-    Gradient {
-        /// Up.
-        up: Vec3,
-        /// Rising.
-        stops: Vec<(f32, Light)>,
-    },
+pub struct Background {
+    up: Vec3,
+    /// By sine of elevation, rising; one stop stands for all directions.
+    stops: Vec<(f32, Light)>,
+    /// Where it shines: pieces in which it is linear, from sine -1 to 1.
+    pieces: Vec<Piece>,
+}
+
+/// From sine `s0` to `s1` the brightness (all lanes together) goes from `w0` to `w1`.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    s0: f64,
+    s1: f64,
+    w0: f64,
+    w1: f64,
+    /// Integral over the sine of this piece and those before it.
+    sum: f64,
 }
 
 impl Background {
@@ -52,7 +65,7 @@ impl Background {
     pub fn new(p: &Params) -> Self {
         let light = |c: [f64; 3]| Lanes::RGB.illuminant(c.map(|x| x as f32));
         if p.spec().name == "constant" {
-            return Background::Constant(light(p.color("color")));
+            return Background::of(Vec3::Y, vec![(0.0, light(p.color("color")))]);
         }
         let stop = |n: &Node| {
             let l = n.list()?;
@@ -62,33 +75,85 @@ impl Background {
             p.entity.params.get("stops").and_then(|n| n.list()).unwrap_or(&[]).iter().filter_map(stop).collect();
         let up = p.vector("up");
         let up = Vec3::new(up[0] as f32, up[1] as f32, up[2] as f32).normalize_or(Vec3::Y);
-        Background::Gradient { up, stops }
+        Background::of(up, stops)
+    }
+
+    fn of(up: Vec3, stops: Vec<(f32, Light)>) -> Self {
+        // Outside the stops the first and the last go on.
+        let known = |s: &&(f32, Light)| s.0 > -1.0 && s.0 < 1.0;
+        let mut knots: Vec<(f64, f64)> = stops.iter().filter(known).map(|s| (f64::from(s.0), s.1.sum())).collect();
+        let mut background = Background { up, stops, pieces: Vec::new() };
+        knots.insert(0, (-1.0, background.at(-1.0).sum()));
+        knots.push((1.0, background.at(1.0_f32.next_down()).sum()));
+        let mut sum = 0.0;
+        for k in knots.windows(2) {
+            let ((s0, w0), (s1, w1)) = (k[0], k[1]);
+            sum += 0.5 * (w0 + w1) * (s1 - s0);
+            background.pieces.push(Piece { s0, s1, w0, w1, sum });
+        }
+        background
     }
 
     /// True when it sends nothing from anywhere.
     pub fn is_black(&self) -> bool {
-        match self {
-            Background::Constant(l) => l.is_black(),
-            Background::Gradient { stops, .. } => stops.iter().all(|s| s.1.is_black()),
-        }
+        self.stops.iter().all(|s| s.1.is_black())
+    }
+
+    /// The power that it sends into a sphere of this radius, all lanes together, W.
+    pub fn power(&self, radius: f64) -> f64 {
+        PI * radius * radius * TAU * self.total()
+    }
+
+    /// A direction from which light comes. `u` in the unit square.
+    pub fn sample(&self, u: (f32, f32)) -> Option<LightSample> {
+        // Find the piece, and the place in it where the integral of its linear density is reached.
+        let target = f64::from(u.0) * self.total();
+        let i = self.pieces.partition_point(|p| p.sum <= target).min(self.pieces.len() - 1);
+        let p = self.pieces[i];
+        let before = i.checked_sub(1).map_or(0.0, |i| self.pieces[i].sum);
+        let rest = ((target - before) / (p.sum - before)).clamp(0.0, 1.0);
+        let root = (p.w0 * p.w0 + rest * (p.w1 * p.w1 - p.w0 * p.w0)).max(0.0).sqrt();
+        let share = rest * (p.w0 + p.w1) / (p.w0 + root);
+        let sine = p.s0 + (p.s1 - p.s0) * share.clamp(0.0, 1.0);
+
+        // Turn around the axis.
+        let up = self.up.as_dvec3().normalize();
+        let (x, y) = up.any_orthonormal_pair();
+        let (r, phi) = ((1.0 - sine * sine).max(0.0).sqrt(), TAU * f64::from(u.1));
+        let direction = (up * sine + x * (r * cos(phi)) + y * (r * sin(phi))).normalize();
+        let pdf = self.pdf(direction);
+        let light = self.radiance(direction.as_vec3()) * (1.0 / pdf);
+        (pdf > 0.0 && light.is_finite()).then_some(LightSample { direction, target: None, light, pdf })
+    }
+
+    /// Density per solid angle with which [`Background::sample`] gives `direction` (unit).
+    pub fn pdf(&self, direction: DVec3) -> f32 {
+        let brightness = self.radiance(direction.as_vec3()).sum();
+        if brightness > 0.0 { (brightness / (TAU * self.total())) as f32 } else { 0.0 }
+    }
+
+    fn total(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |p| p.sum)
     }
 
     /// Radiance from `direction` (any length).
     pub fn radiance(&self, direction: Vec3) -> Light {
-        match self {
-            Background::Constant(l) => *l,
-            Background::Gradient { up, stops } => {
-                let s = direction.normalize_or_zero().dot(*up);
-                let next = stops.partition_point(|x| x.0 <= s);
-                match (next.checked_sub(1).and_then(|i| stops.get(i)), stops.get(next)) {
-                    (Some(a), Some(b)) => {
-                        let w = (s - a.0) / (b.0 - a.0);
-                        a.1 * (1.0 - w) + b.1 * w
-                    }
-                    (Some(only), None) | (None, Some(only)) => only.1,
-                    (None, None) => Light::BLACK,
-                }
+        match self.stops.as_slice() {
+            [only] => only.1,
+            _ => self.at(direction.normalize_or_zero().dot(self.up)),
+        }
+    }
+
+    /// Radiance at a sine of elevation.
+    fn at(&self, s: f32) -> Light {
+        let next = self.stops.partition_point(|x| x.0 <= s);
+        match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
+            (Some(a), Some(b)) => {
+                let w = (s - a.0) / (b.0 - a.0);
+                a.1 * (1.0 - w) + b.1 * w
             }
+            (Some(only), None) | (None, Some(only)) => only.1,
+            (None, None) => Light::BLACK,
         }
     }
 }

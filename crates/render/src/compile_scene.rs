@@ -11,16 +11,18 @@ use crate::film::{AovSet, FilmLayout, Rect};
 use crate::frames::{bad_geometry, frame_time, is_moving};
 use crate::integrators::whitted::Whitted;
 use crate::integrators::{Integrator, MediumStack};
-use crate::lights::{AreaLight, Lamp, LightEntry, ambient_radiance, area_growth};
+use crate::lights::collect::{add_area_lights, scene_radius};
+use crate::lights::pick::LightPicker;
+use crate::lights::{Lamp, LightEntry, ambient_radiance};
 use crate::materials::Material;
 use crate::placement::{PlacedPart, Placement, place_objects};
 use crate::sampler::{SamplerKind, frame_seed};
-use crate::scene::{InstanceInfo, PRIMARY, PartInfo, Scene};
+use crate::scene::{PRIMARY, PartInfo, Scene};
 use crate::textures::Textures;
 use kirkas_accel::{Accel, AccelKind, Executor, Geometry, Instance, SceneGeometry};
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What the caller decides besides the description.
 #[derive(Clone, Debug, Default)]
@@ -209,7 +211,7 @@ fn compile(
     let mut groups = Groups::default();
     let background_group = groups.number("background");
     let placement = place_objects(d, catalog, assets, textures, materials, &mut groups)?;
-    let Placement { world, aggregates, instances, materials, textures, object_names } = placement;
+    let Placement { mut world, aggregates, mut instances, materials, textures, object_names } = placement;
 
     // Lights.
     let (mut lights, mut ambient) = (Vec::new(), Vec::new());
@@ -221,7 +223,14 @@ fn compile(
             None => ambient.push((ambient_radiance(&p), group)),
         }
     }
-    add_area_lights(&world, &aggregates, &instances, &materials, &object_names, &mut lights, warnings);
+    add_area_lights(&mut world, &aggregates, &mut instances, &materials, &object_names, &mut lights, warnings);
+    let background = Arc::new(Background::new(&singles.params(Kind::Background)));
+    let background_light = (!background.is_black()).then(|| {
+        lights.push(LightEntry::new("background", background_group, 1, Lamp::Background(background.clone())));
+        lights.len() as u32 - 1
+    });
+    let radius = scene_radius(&world, &aggregates, &instances);
+    let powers: Vec<f64> = lights.iter().map(|l| l.lamp.power(&materials, &textures, radius)).collect();
 
     // What rays search.
     let geometry = |parts: &[PlacedPart], overrides: &[u32]| -> Vec<Geometry> {
@@ -269,14 +278,10 @@ fn compile(
     let accel = Accel::build(kind, scene_geometry, &Threads).map_err(bad_geometry)?;
 
     if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {
-        let background = Background::new(&singles.params(Kind::Background));
-        if background.is_black() {
-            warnings.push(
-                Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black").help(
-                    "add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour",
-                ),
-            );
-        }
+        warnings.push(
+            Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black")
+                .help("add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour"),
+        );
     }
     if open == close && time.is_none() {
         if let Some(moving) =
@@ -301,9 +306,11 @@ fn compile(
         instances,
         materials,
         textures,
+        picker: LightPicker::by_power(&powers),
         lights,
         ambient,
-        background: Background::new(&singles.params(Kind::Background)),
+        background,
+        background_light,
         background_group,
         camera,
         camera_media: MediumStack::EMPTY,
@@ -325,54 +332,4 @@ fn compile_camera(d: &Description, catalog: &Catalog, singles: &Singles) -> Resu
     };
     let p = Params::new(entity, Kind::Camera, catalog).expect("the description was validated");
     Camera::compile(&p).map_err(|d| vec![d])
-}
-
-/// Every shining part becomes a light, once for each place where it stands.
-fn add_area_lights(
-    world: &[PlacedPart],
-    aggregates: &[Vec<PlacedPart>],
-    instances: &[InstanceInfo],
-    materials: &[Material],
-    object_names: &[String],
-    lights: &mut Vec<LightEntry>,
-    warnings: &mut Vec<Diagnostic>,
-) {
-    let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
-    let mut add = |part: &PlacedPart, instance: Option<&InstanceInfo>| {
-        let material = instance.and_then(|i| i.material).unwrap_or(part.info.material);
-        let Some(emission) = &materials[material as usize].emission else { return };
-        let object = instance.and_then(|i| i.object).unwrap_or(part.info.object);
-        let mut name = object_names[object as usize].clone();
-        let same = counts.entry(object).or_default();
-        *same += 1;
-        if *same > 1 {
-            name = format!("{name}#{same}");
-        }
-        let Some(area) = part.info.surface.area() else {
-            warnings.push(
-                Diagnostic::warning(
-                    "unsampled-light",
-                    format!("`{name}` shines, but lights nothing: its shape cannot be sampled"),
-                )
-                .help("use a rectangle, disk, sphere or mesh, not stretched, as the lamp"),
-            );
-            return;
-        };
-        let growth = instance.map_or(1.0, |i| area_growth(&i.world_from_part.at(0.0)));
-        let lamp = AreaLight {
-            surface: part.info.surface.clone(),
-            placement: instance.map(|i| i.world_from_part.clone()),
-            material,
-            area: area * growth,
-        };
-        lights.push(LightEntry::new(&name, part.info.emission_group, emission.samples, Lamp::Area(Box::new(lamp))));
-    };
-    for part in world {
-        add(part, None);
-    }
-    for instance in instances {
-        for part in &aggregates[instance.aggregate] {
-            add(part, Some(instance));
-        }
-    }
 }

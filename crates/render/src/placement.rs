@@ -2,7 +2,7 @@
 
 use crate::compile_scene::Groups;
 use crate::materials::Material;
-use crate::scene::{InstanceInfo, PartInfo};
+use crate::scene::{InstanceInfo, NO_LIGHT, PartInfo};
 use crate::shapes::{SHAPES, ShapeInput};
 use crate::textures::Textures;
 use kirkas_accel as accel;
@@ -280,7 +280,7 @@ impl Builder<'_> {
             let emission_group = self.emission_group(material, name);
             space.parts.push(PlacedPart {
                 shape: part.shape,
-                info: PartInfo { surface: part.surface, material, object: i as u32, emission_group },
+                info: PartInfo { surface: part.surface, material, object: i as u32, emission_group, light: NO_LIGHT },
                 is_visible: context.is_visible,
             });
         }
@@ -370,6 +370,7 @@ fn flatten(prototypes: Vec<Space>, roots: Vec<Nested>, placed: &mut Placement) -
                 object: n.object,
                 material: n.material,
                 is_visible: n.is_visible,
+                lights: std::sync::Arc::new([]),
             });
         }
         for inner in nested_of[n.prototype].iter().rev() {

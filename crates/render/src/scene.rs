@@ -3,7 +3,8 @@
 use crate::background::Background;
 use crate::camera::Camera;
 use crate::integrators::{MediumStack, ShadowRay};
-use crate::lights::{LightEntry, LightSample};
+use crate::lights::pick::LightPicker;
+use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
 use crate::shapes::Surface;
 use crate::textures::{TexturePoint, Textures};
@@ -27,7 +28,12 @@ pub struct PartInfo {
     pub object: u32,
     /// Light group of its emission.
     pub emission_group: u32,
+    /// Index into `Scene::lights`, if it shines where it stands in the world; else [`NO_LIGHT`].
+    pub light: u32,
 }
+
+/// The number of no light.
+pub const NO_LIGHT: u32 = u32::MAX;
 
 /// What is known of one instance.
 #[derive(Clone)]
@@ -44,6 +50,8 @@ pub struct InstanceInfo {
     pub material: Option<u32>,
     /// Camera rays see it.
     pub is_visible: bool,
+    /// Per geometry of its aggregate an index into `Scene::lights`, or [`NO_LIGHT`]; empty if none of them shines.
+    pub lights: Arc<[u32]>,
 }
 
 /// Mask of camera rays.
@@ -69,8 +77,12 @@ pub struct Scene {
     pub lights: Vec<LightEntry>,
     /// Ambient lights and their groups.
     pub ambient: Vec<(Light, u32)>,
+    /// Chooses among `lights`.
+    pub picker: LightPicker,
     /// What is seen where nothing is hit.
-    pub background: Background,
+    pub background: Arc<Background>,
+    /// Its number among `lights`, if it shines.
+    pub background_light: Option<u32>,
     /// Its light group.
     pub background_group: u32,
     /// The camera in use.
@@ -230,15 +242,36 @@ impl Scene {
         }
     }
 
+    /// The number of the light that a hit belongs to, if it can be sampled.
+    pub fn light_of(&self, hit: &SurfaceHit) -> Option<u32> {
+        let geometry = hit.hit.geometry as usize;
+        let number = match hit.hit.instance.outermost() {
+            NO_INSTANCE => self.world[geometry].light,
+            i => self.instances[i as usize].lights.get(geometry).copied().unwrap_or(NO_LIGHT),
+        };
+        (number != NO_LIGHT).then_some(number)
+    }
+
+    /// The density per solid angle with which [`Scene::sample_light`] of light number `light`, the one of `hit`, would have found
+    /// `hit` from `from`.
+    pub fn light_pdf(&self, light: u32, hit: &SurfaceHit, from: DVec3, time: f64) -> f32 {
+        match &self.lights[light as usize].lamp {
+            Lamp::Area(l) => l.pdf(from, hit.position, hit.normal, time),
+            _ => 0.0,
+        }
+    }
+
+    /// The density per solid angle with which [`Scene::sample_light`] of the background's light gives `direction` (unit).
+    pub fn background_pdf(&self, direction: DVec3) -> f32 {
+        self.background.pdf(direction)
+    }
+
     /// For emission given as power: 1 / (pi area) of the shining part, as placed.
     fn area_scale(&self, hit: &SurfaceHit) -> f64 {
-        let part = self.part(&hit.hit);
-        let area = part.surface.area().unwrap_or(1.0);
-        let growth = match hit.hit.instance.outermost() {
-            NO_INSTANCE => 1.0,
-            i => crate::lights::area_growth(&self.instances[i as usize].world_from_part.at(0.0)),
-        };
-        1.0 / (std::f64::consts::PI * area * growth)
+        match self.light_of(hit).map(|n| &self.lights[n as usize].lamp) {
+            Some(Lamp::Area(l)) => l.per_power(),
+            _ => std::f64::consts::FRAC_1_PI,
+        }
     }
 
     /// A sample of `light` as seen from `from`.

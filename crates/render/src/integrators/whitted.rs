@@ -216,6 +216,9 @@ impl Whitted {
         let boundary = scene.material(hit).medium.is_some();
         let traced = if path.depth < self.max_depth { bsdf.traced_lobes() } else { LobeSet::NONE };
         for (number, light) in scene.lights.iter().enumerate() {
+            if matches!(light.lamp, Lamp::Background(_)) {
+                continue;
+            }
             // A glossy surface finds area lights with its own rays.
             let lobes = if matches!(light.lamp, Lamp::Area(_)) { shaded.without(traced) } else { shaded };
             if lobes.is_empty() {

@@ -5,6 +5,7 @@ use super::{LightSample, Target};
 use crate::materials::Material;
 use crate::shapes::{AreaSample, Surface};
 use crate::textures::{TexturePoint, Textures};
+use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::rounding::gamma;
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
@@ -55,8 +56,11 @@ impl AreaLight {
             return None;
         }
         let pdf = per_solid_angle.unwrap_or(s.pdf_area * r2 / cosine);
-        let at = TexturePoint { uv: s.uv, object_position: s.position, world_position: s.position };
-        let radiance = emission.radiance(textures, &at, 1.0 / (PI * self.area));
+        let material = &materials[self.material as usize];
+        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
+        // The shadow ray ends short of the lamp, so the lamp's own opacity counts here.
+        let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
+        let radiance = emission.radiance(textures, &at, self.per_power()) * opacity;
         let target = Target {
             position: s.position,
             error: s.position.abs() * f64::from(gamma(4)) + from.abs() * f64::from(gamma(2)),
@@ -66,7 +70,51 @@ impl AreaLight {
             direction,
             target: Some(target),
             light: radiance * (1.0 / pdf) as f32,
+            pdf: pdf as f32,
         })
+    }
+
+    /// The density per solid angle with which [`AreaLight::sample`] finds, from `from`, the point at `position` with the unit
+    /// outward `normal`.
+    pub fn pdf(&self, from: DVec3, position: DVec3, normal: DVec3, time: f64) -> f32 {
+        let to_light = position - from;
+        let r2 = to_light.length_squared();
+        let facing = -to_light.dot(normal);
+        let cosine = facing.abs() / r2.sqrt();
+        if cosine.is_nan() || cosine <= 0.0 {
+            return 0.0;
+        }
+        let map = self.placement.as_ref().map(|p| p.at(time));
+        let inverse = map.map(|m| m.inverse());
+        let local = inverse.map_or(from, |i| i.transform_point3(from));
+        if let Some(pdf) = self.surface.pdf_toward(local).filter(|_| map.as_ref().is_none_or(is_similarity)) {
+            return if facing > 0.0 { pdf as f32 } else { 0.0 };
+        }
+        let growth = match (&map, &inverse) {
+            (Some(m), Some(i)) => area_element_growth(m, i, m.matrix3.transpose() * normal),
+            _ => 1.0,
+        };
+        self.surface.area().map_or(0.0, |area| (r2 / (area * growth * cosine)) as f32)
+    }
+
+    /// For emission given as power: 1 / (pi area).
+    pub fn per_power(&self) -> f64 {
+        1.0 / (PI * self.area)
+    }
+
+    /// Its power, all lanes together, W; estimated where a texture glows.
+    pub fn power(&self, materials: &[Material], textures: &Textures) -> f64 {
+        let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
+        let sides = if emission.two_sided { 2.0 } else { 1.0 };
+        let count = if emission.is_textured() { TEXTURE_PROBES } else { 1 };
+        let radiance = |i| {
+            let s = self.surface.sample_area(owen_sobol_2d(i, 0))?;
+            let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
+            let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
+            Some(emission.radiance(textures, &at, self.per_power()).sum())
+        };
+        let mean = (0..count).filter_map(radiance).sum::<f64>() / f64::from(count);
+        PI * self.area * sides * mean
     }
 
     /// A point in the world with its density by area, and by solid angle if the shape sampled that.
@@ -83,14 +131,20 @@ impl AreaLight {
             Some((s, pdf)) if is_similarity(m) => (s, Some(pdf)),
             _ => (self.surface.sample_area(u)?, None),
         };
-        let normal = transform_normal(&inverse, s.normal);
-        // An area element grows by |det M| |M^-T n|.
-        s.pdf_area /= m.matrix3.determinant().abs() * normal.length();
-        s.normal = normal.normalize();
+        s.pdf_area /= area_element_growth(m, &inverse, s.normal);
+        s.normal = transform_normal(&inverse, s.normal).normalize();
         s.position = m.transform_point3(s.position);
         Some((s, pdf))
     }
 }
+
+/// By which factor a small piece of surface with `normal` (of any length, before the map) grows: |det M| |M^-T n|.
+fn area_element_growth(m: &DAffine3, inverse: &DAffine3, normal: DVec3) -> f64 {
+    m.matrix3.determinant().abs() * transform_normal(inverse, normal.normalize()).length()
+}
+
+/// Places where a glowing texture is looked at to guess its power.
+const TEXTURE_PROBES: u32 = 64;
 
 fn is_similarity(m: &DAffine3) -> bool {
     let (x, y, z) = (m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis);

@@ -19,6 +19,7 @@
 
 use super::point::COLOR;
 use super::{LightSample, units};
+use core::f64::consts::PI;
 use kirkas_geometry::DVec3;
 use kirkas_optics::Light;
 use kirkas_scene::spec::NOT_NEGATIVE;
@@ -58,8 +59,13 @@ impl DirectionalLight {
         }
     }
 
+    /// The power that crosses a disk of this radius, all lanes together, W.
+    pub fn power(&self, radius: f64) -> f64 {
+        PI * radius * radius * self.irradiance.sum()
+    }
+
     /// What arrives anywhere.
     pub fn sample(&self) -> Option<LightSample> {
-        Some(LightSample { direction: self.towards, target: None, light: self.irradiance })
+        Some(LightSample { direction: self.towards, target: None, light: self.irradiance, pdf: 0.0 })
     }
 }

@@ -1,23 +1,32 @@
 //! Lights: from where, and how much of it, light arrives at a point.
 //!
 //! Contract: a sample's `light` is what the cosine and the BSDF are multiplied by: for points, spots and directions the
-//! irradiance on a surface facing the light; for areas the radiance over the density per solid angle.
+//! irradiance on a surface facing the light; for areas and backgrounds the radiance over the density per solid angle. That density
+//! is the sample's `pdf`; [`Scene::light_pdf`] and [`Scene::background_pdf`] give the same one for a ray that finds the light by
+//! itself, so that both ways can be weighted against each other. Neither knows of the choice among lights: that is [`pick`].
+//!
+//! [`Scene::light_pdf`]: crate::Scene::light_pdf
+//! [`Scene::background_pdf`]: crate::Scene::background_pdf
 
 mod ambient;
 mod area;
+pub(crate) mod collect;
 mod directional;
+pub mod pick;
 mod point;
 mod spot;
 pub mod units;
 
 pub use area::{AreaLight, area_growth};
 
+use crate::background::Background;
 use crate::materials::Material;
 use crate::textures::Textures;
 use kirkas_geometry::DVec3;
 use kirkas_geometry::hash::of_name;
 use kirkas_optics::Light;
 use kirkas_scene::{Fallback, ParamSpec, ParamType, Params, TypeSpec};
+use std::sync::Arc;
 
 /// Every light type.
 pub const LIGHTS: &[&TypeSpec] = &[&point::SPEC, &spot::SPEC, &directional::SPEC, &ambient::SPEC];
@@ -46,6 +55,8 @@ pub struct LightSample {
     pub target: Option<Target>,
     /// See the contract.
     pub light: Light,
+    /// Density per solid angle with which this light's sampling finds the direction; 0 for lights that no ray can hit.
+    pub pdf: f32,
 }
 
 impl LightSample {
@@ -66,6 +77,8 @@ pub enum Lamp {
     Directional(directional::DirectionalLight),
     /// A shining surface.
     Area(Box<AreaLight>),
+    /// What lies behind everything.
+    Background(Arc<Background>),
 }
 
 /// A light in a scene.
@@ -115,6 +128,18 @@ impl Lamp {
             Lamp::Spot(l) => l.sample(from),
             Lamp::Directional(l) => l.sample(),
             Lamp::Area(l) => l.sample(materials, textures, from, time, u),
+            Lamp::Background(l) => l.sample(u),
+        }
+    }
+
+    /// About how much light it sends into a scene of this radius, all lanes together, W: what lights are picked by.
+    pub fn power(&self, materials: &[Material], textures: &Textures, radius: f64) -> f64 {
+        match self {
+            Lamp::Point(l) => l.power(),
+            Lamp::Spot(l) => l.power(),
+            Lamp::Directional(l) => l.power(radius),
+            Lamp::Area(l) => l.power(materials, textures),
+            Lamp::Background(l) => l.power(radius),
         }
     }
 }

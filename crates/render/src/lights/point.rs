@@ -73,11 +73,16 @@ impl PointLight {
         }
     }
 
+    /// Its power, all lanes together, W.
+    pub fn power(&self) -> f64 {
+        4.0 * PI * self.intensity.sum()
+    }
+
     /// What arrives at `from`.
     pub fn sample(&self, from: DVec3) -> Option<LightSample> {
         let (direction, r) = towards(self.position, from)?;
         let light = self.intensity * units::falloff(self.attenuation, r) as f32;
-        Some(LightSample { direction, target: Some(point_target(self.position)), light })
+        Some(LightSample { direction, target: Some(point_target(self.position)), light, pdf: 0.0 })
     }
 }
 

@@ -65,8 +65,7 @@ impl SpotLight {
         let cosine = |name| cos(f64::to_radians(p.number(name)));
         let cos_falloff = cosine("falloff_angle");
         let cos_hotspot = cosine("hotspot").max(cos_falloff);
-        // Half of the light between the cones counts: the smooth step's mean is 1/2.
-        let solid_angle = 2.0 * PI * ((1.0 - cos_hotspot) + 0.5 * (cos_hotspot - cos_falloff));
+        let solid_angle = effective_solid_angle(cos_hotspot, cos_falloff);
         let unit = p.text("unit").unwrap_or("plain");
         SpotLight {
             position: DVec3::from_array(p.vector("position")),
@@ -76,6 +75,11 @@ impl SpotLight {
             intensity: units::light(p.number("intensity"), p.color("color"), unit, solid_angle),
             attenuation: p.optional_vector("attenuation"),
         }
+    }
+
+    /// Its power, all lanes together, W.
+    pub fn power(&self) -> f64 {
+        effective_solid_angle(self.cos_hotspot, self.cos_falloff) * self.intensity.sum()
     }
 
     /// Share of the full light at an angle from the axis, given its cosine.
@@ -95,6 +99,12 @@ impl SpotLight {
         let (direction, r) = towards(self.position, from)?;
         let share = self.profile(-direction.dot(self.axis));
         let light = self.intensity * (share * units::falloff(self.attenuation, r)) as f32;
-        (share > 0.0).then_some(LightSample { direction, target: Some(point_target(self.position)), light })
+        let target = Some(point_target(self.position));
+        (share > 0.0).then_some(LightSample { direction, target, light, pdf: 0.0 })
     }
+}
+
+/// Half of the light between the cones counts: the smooth step's mean is 1/2.
+fn effective_solid_angle(cos_hotspot: f64, cos_falloff: f64) -> f64 {
+    2.0 * PI * ((1.0 - cos_hotspot) + 0.5 * (cos_hotspot - cos_falloff))
 }

@@ -160,6 +160,11 @@ impl Emission {
         }
     }
 
+    /// True when it may differ from place to place.
+    pub fn is_textured(&self) -> bool {
+        matches!(self.radiance, ColorSource::Texture(_))
+    }
+
     /// Radiance at a point; `per_power` is 1 / (pi area) of the whole lamp.
     pub fn radiance(&self, textures: &Textures, at: &TexturePoint, per_power: f64) -> Light {
         let color = textures.color(self.radiance, at).map(f64::from);

@@ -236,6 +236,7 @@ impl<C: Canonical> Surface for Placed<C> {
             position: self.part_from_canonical.transform_point3(p),
             normal: self.normal(&local),
             uv: local.uv.map(|x| x as f32),
+            object_position: self.object_from_canonical.transform_point3(p),
             pdf_area: 1.0 / area,
         })
     }

@@ -119,6 +119,8 @@ pub struct AreaSample {
     pub normal: DVec3,
     /// Texture coordinates.
     pub uv: [f32; 2],
+    /// The point in object space: where solid textures look.
+    pub object_position: DVec3,
     /// Density per area of part space (1 / scene unit squared).
     pub pdf_area: f64,
 }
@@ -140,7 +142,8 @@ pub trait Surface: Send + Sync {
         None
     }
 
-    /// The density per solid angle of [`Surface::sample_toward`] from `from`, uniform over what it covers; `None` as there.
+    /// The density per solid angle of [`Surface::sample_toward`] from `from`, uniform over the points that face `from`, which
+    /// are all it covers; `None` as there.
     fn pdf_toward(&self, _from: DVec3) -> Option<f64> {
         None
     }

@@ -65,6 +65,11 @@ impl SphereSet {
         (sphere_uv(n).map(|x| x as f32), n)
     }
 
+    fn area_sample(&self, position: DVec3, normal: DVec3, pdf_area: f64) -> AreaSample {
+        let object_position = self.object_from_part.transform_point3(position);
+        AreaSample { position, normal, uv: self.uv(normal).0, object_position, pdf_area }
+    }
+
     /// The cone in which the only sphere is seen from `from`: distance to the center, and 1 - cos of the half angle.
     fn cone(&self, from: DVec3) -> Option<Cone> {
         let [sphere] = self.spheres.as_slice() else { return None };
@@ -129,7 +134,7 @@ impl Surface for SphereSet {
         let sphere = &self.spheres[i];
         let normal = uniform_direction((rest, f64::from(u.1)));
         let position = sphere.center.as_dvec3() + normal * f64::from(sphere.radius);
-        Some(AreaSample { position, normal, uv: self.uv(normal).0, pdf_area: 1.0 / total })
+        Some(self.area_sample(position, normal, 1.0 / total))
     }
 
     fn sample_toward(&self, from: DVec3, u: (f32, f32)) -> Option<(AreaSample, f64)> {
@@ -152,7 +157,7 @@ impl Surface for SphereSet {
         let to_point = position - from;
         let cosine = (-normal.dot(to_point)).max(0.0) / to_point.length();
         let pdf_area = cone.pdf() * cosine / to_point.length_squared();
-        Some((AreaSample { position, normal, uv: self.uv(normal).0, pdf_area }, cone.pdf()))
+        Some((self.area_sample(position, normal, pdf_area), cone.pdf()))
     }
 
     fn pdf_toward(&self, from: DVec3) -> Option<f64> {

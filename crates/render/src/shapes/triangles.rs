@@ -131,10 +131,12 @@ impl Surface for TriangleSurface {
         let (b1, b2) = (f64::from(b1), f64::from(b2));
         let weights = [1.0 - b1 - b2, b1, b2];
         let (corners, uvs) = (self.corners(i as u32), self.uvs(i as u32));
+        let position = mix(corners, weights);
         Some(AreaSample {
-            position: mix(corners, weights),
+            position,
             normal: normal(corners),
             uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
+            object_position: self.mesh.object_from_part.transform_point3(position),
             pdf_area: 1.0 / total,
         })
     }

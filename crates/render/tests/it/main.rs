@@ -6,6 +6,7 @@ mod effects;
 mod everything;
 mod films;
 mod filters;
+mod light_sampling;
 mod manuals;
 mod numbers;
 mod observer;
