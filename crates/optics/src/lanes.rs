@@ -1,6 +1,7 @@
 //! What the four lanes of a path are, and how colours enter and leave them.
 //!
-//! Colours enter through [`Lanes::reflectance`], [`Lanes::unbounded`] and [`Lanes::illuminant`] and leave through
+//! Colours enter through [`Spectrum::at`](crate::Spectrum::at) or, from textures, through [`Lanes::reflectance`],
+//! [`Lanes::unbounded`] and [`Lanes::illuminant`], and leave through
 //! [`Lanes::to_film`]; all between is the same in every mode. Only RGB mode exists so far: lanes red, green, blue of
 //! linear Rec.709 and an idle one, which no colour fills.
 
@@ -64,7 +65,8 @@ impl Lanes {
         }
     }
 
-    fn fill(&self, rgb: [f32; 3]) -> Light {
+    #[inline]
+    pub(crate) fn fill(&self, rgb: [f32; 3]) -> Light {
         match self.mode {
             Mode::Rgb => Light([rgb[0], rgb[1], rgb[2], 0.0]),
         }

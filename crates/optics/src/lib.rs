@@ -10,8 +10,10 @@ pub mod lanes;
 pub mod light;
 pub mod medium;
 pub mod microfacet;
+pub mod spectrum;
 
 pub use bsdf::{Branches, Bsdf, BsdfModel, BsdfSample, Interface, Lobe, LobeSet, Mode, SPECS};
 pub use lanes::Lanes;
 pub use light::Light;
 pub use medium::Medium;
+pub use spectrum::{Palette, Spectrum};

@@ -1,23 +1,23 @@
 //! What fills a closed surface: refractive index, priority among overlapping fillings, absorption.
 
-use crate::Light;
+use crate::{Light, Spectrum};
 use kirkas_geometry::elementary::exp_f32;
 
 /// A clear, evenly absorbing filling.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
     /// Refractive index.
     pub ior: f32,
     /// Where fillings overlap, the highest priority wins (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
     /// Traced Images").
     pub priority: i32,
-    /// Absorption coefficient, linear Rec.709, per scene unit; make it lanes with `Lanes::unbounded`.
-    pub absorption: [f32; 3],
+    /// Absorption coefficient per scene unit.
+    pub absorption: Spectrum,
 }
 
 impl Medium {
     /// Vacuum, and near enough air.
-    pub const VACUUM: Self = Medium { ior: 1.0, priority: i32::MIN, absorption: [0.0; 3] };
+    pub const VACUUM: Self = Medium { ior: 1.0, priority: i32::MIN, absorption: Spectrum::BLACK };
 }
 
 /// What is left of light after `distance`: `exp(-absorption distance)` (Beer & Lambert).

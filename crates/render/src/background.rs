@@ -8,7 +8,7 @@ use crate::lights::LightSample;
 use core::f64::consts::{PI, TAU};
 use kirkas_geometry::elementary::{cos, sin};
 use kirkas_geometry::{DVec3, Vec3};
-use kirkas_optics::{Lanes, Light};
+use kirkas_optics::{Lanes, Light, Palette, Spectrum};
 use kirkas_scene::params::read_color;
 use kirkas_scene::{Fallback, Kind, Node, ParamSpec, ParamType, Params, TypeSpec};
 
@@ -44,7 +44,7 @@ pub const GRADIENT: TypeSpec = TypeSpec {
 pub struct Background {
     up: Vec3,
     /// By sine of elevation, rising; one stop stands for all directions.
-    stops: Vec<(f32, Light)>,
+    stops: Vec<(f32, Spectrum)>,
     /// Where it shines: pieces in which it is linear, from sine -1 to 1.
     pieces: Vec<Piece>,
 }
@@ -62,8 +62,8 @@ struct Piece {
 
 impl Background {
     /// From its parameters.
-    pub fn new(p: &Params) -> Self {
-        let light = |c: [f64; 3]| Lanes::RGB.illuminant(c.map(|x| x as f32));
+    pub fn new(p: &Params, palette: &Palette) -> Self {
+        let light = |c: [f64; 3]| palette.illuminant(c.map(|x| x as f32));
         if p.spec().name == "constant" {
             return Background::of(Vec3::Y, vec![(0.0, light(p.color("color")))]);
         }
@@ -78,13 +78,13 @@ impl Background {
         Background::of(up, stops)
     }
 
-    fn of(up: Vec3, stops: Vec<(f32, Light)>) -> Self {
+    fn of(up: Vec3, stops: Vec<(f32, Spectrum)>) -> Self {
         // Outside the stops the first and the last go on.
-        let known = |s: &&(f32, Light)| s.0 > -1.0 && s.0 < 1.0;
+        let known = |s: &&(f32, Spectrum)| s.0 > -1.0 && s.0 < 1.0;
         let mut knots: Vec<(f64, f64)> = stops.iter().filter(known).map(|s| (f64::from(s.0), s.1.sum())).collect();
         let mut background = Background { up, stops, pieces: Vec::new() };
-        knots.insert(0, (-1.0, background.at(-1.0).sum()));
-        knots.push((1.0, background.at(1.0_f32.next_down()).sum()));
+        knots.insert(0, (-1.0, background.at(&Lanes::RGB, -1.0).sum()));
+        knots.push((1.0, background.at(&Lanes::RGB, 1.0_f32.next_down()).sum()));
         let mut sum = 0.0;
         for k in knots.windows(2) {
             let ((s0, w0), (s1, w1)) = (k[0], k[1]);
@@ -105,7 +105,7 @@ impl Background {
     }
 
     /// A direction from which light comes. `u` in the unit square.
-    pub fn sample(&self, u: (f32, f32)) -> Option<LightSample> {
+    pub fn sample(&self, lanes: &Lanes, u: (f32, f32)) -> Option<LightSample> {
         // Find the piece, and the place in it where the integral of its linear density is reached.
         let target = f64::from(u.0) * self.total();
         let i = self.pieces.partition_point(|p| p.sum <= target).min(self.pieces.len() - 1);
@@ -122,13 +122,13 @@ impl Background {
         let (r, phi) = ((1.0 - sine * sine).max(0.0).sqrt(), TAU * f64::from(u.1));
         let direction = (up * sine + x * (r * cos(phi)) + y * (r * sin(phi))).normalize();
         let pdf = self.pdf(direction);
-        let light = self.radiance(direction.as_vec3()) * (1.0 / pdf);
+        let light = self.radiance(lanes, direction.as_vec3()) * (1.0 / pdf);
         (pdf > 0.0 && light.is_finite()).then_some(LightSample { direction, target: None, light, pdf })
     }
 
     /// Density per solid angle with which [`Background::sample`] gives `direction` (unit).
     pub fn pdf(&self, direction: DVec3) -> f32 {
-        let brightness = self.radiance(direction.as_vec3()).sum();
+        let brightness = self.radiance(&Lanes::RGB, direction.as_vec3()).sum();
         if brightness > 0.0 { (brightness / (TAU * self.total())) as f32 } else { 0.0 }
     }
 
@@ -137,22 +137,22 @@ impl Background {
     }
 
     /// Radiance from `direction` (any length).
-    pub fn radiance(&self, direction: Vec3) -> Light {
+    pub fn radiance(&self, lanes: &Lanes, direction: Vec3) -> Light {
         match self.stops.as_slice() {
-            [only] => only.1,
-            _ => self.at(direction.normalize_or_zero().dot(self.up)),
+            [only] => only.1.at(lanes),
+            _ => self.at(lanes, direction.normalize_or_zero().dot(self.up)),
         }
     }
 
     /// Radiance at a sine of elevation.
-    fn at(&self, s: f32) -> Light {
+    fn at(&self, lanes: &Lanes, s: f32) -> Light {
         let next = self.stops.partition_point(|x| x.0 <= s);
         match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
             (Some(a), Some(b)) => {
                 let w = (s - a.0) / (b.0 - a.0);
-                a.1 * (1.0 - w) + b.1 * w
+                a.1.at(lanes) * (1.0 - w) + b.1.at(lanes) * w
             }
-            (Some(only), None) | (None, Some(only)) => only.1,
+            (Some(only), None) | (None, Some(only)) => only.1.at(lanes),
             (None, None) => Light::BLACK,
         }
     }

@@ -20,6 +20,7 @@ use crate::sampler::{SamplerKind, frame_seed};
 use crate::scene::{PRIMARY, PartInfo, Scene};
 use crate::textures::Textures;
 use kirkas_accel::{Accel, AccelKind, Executor, Geometry, Instance, SceneGeometry};
+use kirkas_optics::Palette;
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
 use std::sync::Arc;
@@ -194,13 +195,15 @@ fn compile(
     (resolution, time): ((u32, u32), Option<f64>),
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Scene, Vec<Diagnostic>> {
+    let palette = Palette::RGB;
+
     // Textures and materials, by name.
     let textures = Textures::compile(d, catalog, assets)?;
     let params = |kind, entity| Params::new(entity, kind, catalog).expect("the description was validated");
     let materials: Vec<Material> = d
         .all(Kind::Material)
         .iter()
-        .filter_map(|e| Material::new(&params(Kind::Material, e), textures.names()))
+        .filter_map(|e| Material::new(&params(Kind::Material, e), textures.names(), &palette))
         .collect();
 
     // The camera.
@@ -210,7 +213,7 @@ fn compile(
     // Objects: parts in the world, aggregates, and where they are placed.
     let mut groups = Groups::default();
     let background_group = groups.number("background");
-    let placement = place_objects(d, catalog, assets, textures, materials, &mut groups)?;
+    let placement = place_objects(d, catalog, assets, &palette, textures, materials, &mut groups)?;
     let Placement { mut world, aggregates, mut instances, materials, textures, object_names } = placement;
 
     // Lights.
@@ -218,13 +221,13 @@ fn compile(
     for entity in d.all(Kind::Light) {
         let p = params(Kind::Light, entity);
         let group = groups.number(p.text("group").unwrap_or(&entity.name.text));
-        match Lamp::new(&p) {
+        match Lamp::new(&p, &palette) {
             Some(lamp) => lights.push(LightEntry::new(&entity.name.text, group, 1, lamp)),
-            None => ambient.push((ambient_radiance(&p), group)),
+            None => ambient.push((ambient_radiance(&p, &palette), group)),
         }
     }
     add_area_lights(&mut world, &aggregates, &mut instances, &materials, &object_names, &mut lights, warnings);
-    let background = Arc::new(Background::new(&singles.params(Kind::Background)));
+    let background = Arc::new(Background::new(&singles.params(Kind::Background), &palette));
     let background_light = (!background.is_black()).then(|| {
         lights.push(LightEntry::new("background", background_group, 1, Lamp::Background(background.clone())));
         lights.len() as u32 - 1

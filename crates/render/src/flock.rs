@@ -19,6 +19,7 @@ struct Slot {
     id: SampleId,
     pixel: usize,
     sampler: Sampler,
+    lanes: Lanes,
     /// The filter's weight.
     weight: f32,
     /// Rays that may still bring light.
@@ -127,7 +128,17 @@ impl<'a, O: Observer> Flock<'a, O> {
         let new = |mut sums: Vec<[i128; 3]>| {
             sums.clear();
             sums.resize(planes, [0; 3]);
-            Slot { id, pixel, sampler, weight: start.weight, pending: 1, sums, is_invalid: false, aov: None }
+            Slot {
+                id,
+                pixel,
+                sampler,
+                lanes: start.path.lanes,
+                weight: start.weight,
+                pending: 1,
+                sums,
+                is_invalid: false,
+                aov: None,
+            }
         };
         let index = match self.free.pop() {
             Some(i) => {
@@ -278,7 +289,7 @@ const DONE: usize = usize::MAX;
 
 /// Round a contribution once and add it to its sample.
 fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64, light: Light, group: u32) {
-    let rgb = Lanes::RGB.to_film(light);
+    let rgb = slot.lanes.to_film(light);
     let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
     let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
         slot.is_invalid = true;

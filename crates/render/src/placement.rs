@@ -7,6 +7,7 @@ use crate::shapes::{SHAPES, ShapeInput};
 use crate::textures::Textures;
 use kirkas_accel as accel;
 use kirkas_geometry::{AnimatedTransform, DAffine3};
+use kirkas_optics::Palette;
 use kirkas_scene::transforms::{read_motion, read_transform};
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params, SourceId};
 use std::collections::BTreeMap;
@@ -38,6 +39,7 @@ pub(crate) fn place_objects(
     d: &Description,
     catalog: &Catalog,
     assets: &dyn Assets,
+    palette: &Palette,
     textures: Textures,
     materials: Vec<Material>,
     groups: &mut Groups,
@@ -50,6 +52,7 @@ pub(crate) fn place_objects(
         d,
         catalog,
         assets,
+        palette,
         groups,
         material_numbers: materials.iter().enumerate().map(|(i, m)| (m.name.clone(), i as u32)).collect(),
         materials,
@@ -120,6 +123,7 @@ struct Builder<'a> {
     d: &'a Description,
     catalog: &'a Catalog,
     assets: &'a dyn Assets,
+    palette: &'a Palette,
     groups: &'a mut Groups,
     material_numbers: BTreeMap<String, u32>,
     materials: Vec<Material>,
@@ -305,7 +309,7 @@ impl Builder<'_> {
         }
         let entity = Entity::new(NAME, "lambert", Map::default());
         let params = Params::new(&entity, Kind::Material, self.catalog).expect("`lambert` is listed");
-        self.materials.extend(Material::new(&params, self.textures.names()));
+        self.materials.extend(Material::new(&params, self.textures.names(), self.palette));
         self.material_numbers.insert(NAME.into(), self.materials.len() as u32 - 1);
         self.materials.len() as u32 - 1
     }
@@ -323,7 +327,7 @@ impl Builder<'_> {
         let names = self.textures.add(&mesh.textures, &mesh.folder, self.catalog, self.assets).map_err(first)?;
         for entity in &mesh.materials {
             let params = Params::new(entity, Kind::Material, self.catalog);
-            if let Some(mut material) = params.and_then(|p| Material::new(&p, &names)) {
+            if let Some(mut material) = params.and_then(|p| Material::new(&p, &names, self.palette)) {
                 material.name = format!("{}.{}", p.entity.name.text, entity.name.text);
                 self.materials.push(material);
                 self.material_numbers.insert(key(&entity.name.text), self.materials.len() as u32 - 1);

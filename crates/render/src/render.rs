@@ -150,9 +150,11 @@ impl Renderer<'_> {
         };
         let mut ray = camera.ray(&sample, self.resolution);
         ray.mask = PRIMARY;
+        let lanes = Lanes::RGB;
         let path = PathState {
             ray,
-            throughput: Lanes::RGB.one() * self.scene.camera_gain,
+            lanes,
+            throughput: lanes.one() * self.scene.camera_gain,
             depth: 0,
             kind: RayKind::Camera,
             branch: 0,

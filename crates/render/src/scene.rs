@@ -14,7 +14,7 @@ use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
 use kirkas_optics::medium::transmittance;
-use kirkas_optics::{Bsdf, Interface, Lanes, Light, Medium};
+use kirkas_optics::{Bsdf, Interface, Lanes, Light, Medium, Spectrum};
 use std::sync::Arc;
 
 /// What is known of one geometry of the accelerator.
@@ -76,7 +76,7 @@ pub struct Scene {
     /// All lights but the ambient ones.
     pub lights: Vec<LightEntry>,
     /// Ambient lights and their groups.
-    pub ambient: Vec<(Light, u32)>,
+    pub ambient: Vec<(Spectrum, u32)>,
     /// Chooses among `lights`.
     pub picker: LightPicker,
     /// What is seen where nothing is hit.
@@ -230,14 +230,16 @@ impl Scene {
     }
 
     /// The scattering at a hit.
-    pub fn bsdf(&self, hit: &SurfaceHit, interface: Interface) -> Bsdf {
-        self.material(hit).bsdf(&self.textures, &hit.texture, interface)
+    pub fn bsdf(&self, lanes: &Lanes, hit: &SurfaceHit, interface: Interface) -> Bsdf {
+        self.material(hit).bsdf(lanes, &self.textures, &hit.texture, interface)
     }
 
     /// Radiance that the surface itself sends towards where the ray came from.
-    pub fn emitted(&self, hit: &SurfaceHit) -> Light {
+    pub fn emitted(&self, lanes: &Lanes, hit: &SurfaceHit) -> Light {
         match &self.material(hit).emission {
-            Some(e) if hit.is_front || e.two_sided => e.radiance(&self.textures, &hit.texture, self.area_scale(hit)),
+            Some(e) if hit.is_front || e.two_sided => {
+                e.radiance(lanes, &self.textures, &hit.texture, self.area_scale(hit))
+            }
             _ => Light::BLACK,
         }
     }
@@ -275,23 +277,30 @@ impl Scene {
     }
 
     /// A sample of `light` as seen from `from`.
-    pub fn sample_light(&self, light: &LightEntry, from: DVec3, time: f64, u: (f32, f32)) -> Option<LightSample> {
-        light.lamp.sample(&self.materials, &self.textures, from, time, u)
+    pub fn sample_light(
+        &self,
+        lanes: &Lanes,
+        light: &LightEntry,
+        from: DVec3,
+        time: f64,
+        u: (f32, f32),
+    ) -> Option<LightSample> {
+        light.lamp.sample(lanes, &self.materials, &self.textures, from, time, u)
     }
 
     /// The body that fills the space at a path's end: the one of highest priority, the last entered among equals.
-    pub fn body_of(&self, media: &MediumStack) -> Option<Medium> {
-        self.ruling(media).and_then(|m| self.materials[m as usize].medium)
+    pub fn body_of(&self, media: &MediumStack) -> Option<&Medium> {
+        self.ruling(media).and_then(|m| self.materials[m as usize].medium.as_ref())
     }
 
     pub(crate) fn ruling(&self, media: &MediumStack) -> Option<u32> {
-        let priority = |m: u32| self.materials[m as usize].medium.map_or(i32::MIN, |x| x.priority);
+        let priority = |m: u32| self.materials[m as usize].medium.as_ref().map_or(i32::MIN, |x| x.priority);
         media.materials().iter().copied().reduce(|best, m| if priority(m) >= priority(best) { m } else { best })
     }
 
     /// True when the boundary of `material` lies inside a body of higher rank and is not there (Schmidt & Budge 2002).
     pub fn is_covered(&self, media: &MediumStack, material: u32, entering: bool) -> bool {
-        let priority = |m: u32| self.materials[m as usize].medium.map_or(i32::MIN, |x| x.priority);
+        let priority = |m: u32| self.materials[m as usize].medium.as_ref().map_or(i32::MIN, |x| x.priority);
         match self.ruling(media) {
             Some(ruler) if entering => priority(ruler) > priority(material),
             Some(ruler) => ruler != material && media.materials().contains(&material),
@@ -300,9 +309,9 @@ impl Scene {
     }
 
     /// What is left of light after `distance` through the body that rules in `media`.
-    pub fn clearness(&self, media: &MediumStack, distance: f64) -> Light {
+    pub fn clearness(&self, lanes: &Lanes, media: &MediumStack, distance: f64) -> Light {
         match self.body_of(media) {
-            Some(body) => transmittance(Lanes::RGB.unbounded(body.absorption), distance as f32),
+            Some(body) => transmittance(body.absorption.at(lanes), distance as f32),
             None => Light::splat(1.0),
         }
     }
@@ -310,7 +319,7 @@ impl Scene {
     /// What is left of a filtered shadow ray's light on its last way, to the light.
     pub fn arrived(&self, shadow: &ShadowRay) -> Light {
         let length = if shadow.ray.t_max.is_finite() { shadow.ray.direction.length() } else { f32::INFINITY };
-        shadow.light * self.clearness(&shadow.media, f64::from(length))
+        shadow.light * self.clearness(&shadow.lanes, &shadow.media, f64::from(length))
     }
 
     /// A filtered shadow ray behind the surface it met, tinted by what that lets through; `None` if it lets nothing through.
@@ -318,9 +327,9 @@ impl Scene {
         const MOST: u32 = 256;
         let s = self.surface(&shadow.ray, hit);
         let material = self.material(&s);
-        let tint = material.straight_transmittance(&self.textures, &s.texture)?;
+        let tint = material.straight_transmittance(&shadow.lanes, &self.textures, &s.texture)?;
         let way = f64::from(hit.t * shadow.ray.direction.length());
-        let mut light = shadow.light * self.clearness(&shadow.media, way);
+        let mut light = shadow.light * self.clearness(&shadow.lanes, &shadow.media, way);
         if !self.is_covered(&shadow.media, s.material, s.is_front) {
             light *= tint;
         }

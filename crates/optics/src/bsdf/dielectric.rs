@@ -41,7 +41,7 @@
 
 use super::boundary::{DeltaPair, Fresnel, Split, pick};
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::{Light, Medium};
+use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -84,25 +84,25 @@ pub struct Dielectric {
 }
 
 /// The filling that a dielectric's rows describe.
-pub(super) fn read_medium(params: &Params) -> Medium {
+pub(super) fn read_medium(params: &Params, palette: &Palette) -> Medium {
     Medium {
         ior: params.f32("ior"),
         priority: params.integer("priority") as i32,
-        absorption: params.color("absorption").map(|x| x as f32),
+        absorption: palette.unbounded(params.color("absorption").map(|x| x as f32)),
     }
 }
 
 impl Prepare for Prepared {
     type At = Dielectric;
-    fn prepare(params: &Params) -> Self {
-        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params) }
+    fn prepare(params: &Params, palette: &Palette) -> Self {
+        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params, palette) }
     }
-    fn at(&self, slots: &[Light], interface: Interface) -> Dielectric {
+    fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> Dielectric {
         let split = Split { reflect: slots[REFLECTANCE], transmit: slots[TRANSMITTANCE], fresnel: self.fresnel };
         Dielectric { pair: DeltaPair { split, interface } }
     }
-    fn medium(&self) -> Option<Medium> {
-        Some(self.medium)
+    fn medium(&self) -> Option<&Medium> {
+        Some(&self.medium)
     }
 }
 

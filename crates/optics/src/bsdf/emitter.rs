@@ -31,7 +31,7 @@
 //! Units: IES, "Nomenclature and Definitions for Illuminating Engineering", LS-1-20.
 
 use super::{BsdfSample, Interface, LobeSet, Mode, Prepare, Scatter};
-use crate::Light;
+use crate::{Lanes, Light, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
@@ -61,10 +61,10 @@ pub struct Emitter;
 
 impl Prepare for Prepared {
     type At = Emitter;
-    fn prepare(_: &Params) -> Self {
+    fn prepare(_: &Params, _: &Palette) -> Self {
         Prepared
     }
-    fn at(&self, _: &[Light], _: Interface) -> Emitter {
+    fn at(&self, _: &Lanes, _: &[Light], _: Interface) -> Emitter {
         Emitter
     }
 }

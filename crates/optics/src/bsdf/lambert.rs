@@ -26,7 +26,7 @@
 //! J. H. Lambert, "Photometria", 1760.
 
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::Light;
+use crate::{Lanes, Light, Palette};
 use core::f32::consts::PI;
 use kirkas_geometry::Vec3;
 use kirkas_geometry::warp::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
@@ -54,10 +54,10 @@ pub struct Lambert {
 
 impl Prepare for Prepared {
     type At = Lambert;
-    fn prepare(_: &Params) -> Self {
+    fn prepare(_: &Params, _: &Palette) -> Self {
         Prepared
     }
-    fn at(&self, slots: &[Light], _: Interface) -> Lambert {
+    fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> Lambert {
         Lambert { reflectance: slots[REFLECTANCE] }
     }
 }

@@ -28,7 +28,7 @@
 
 use super::boundary::Fresnel;
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::{Light, fresnel};
+use crate::{Lanes, Light, Palette, fresnel};
 use kirkas_geometry::Vec3;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -60,10 +60,10 @@ pub struct Mirror {
 
 impl Prepare for Prepared {
     type At = Mirror;
-    fn prepare(params: &Params) -> Self {
+    fn prepare(params: &Params, _: &Palette) -> Self {
         Prepared { fresnel: Fresnel::of(params.text("fresnel")) }
     }
-    fn at(&self, slots: &[Light], _: Interface) -> Mirror {
+    fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> Mirror {
         Mirror { reflectance: slots[REFLECTANCE], fresnel: self.fresnel }
     }
 }

@@ -18,7 +18,7 @@
 //! To add a model: write `NAME.rs` beside this file (start from `lambert.rs`), and add `pub mod NAME;` and its row in
 //! `models!` below.
 
-use crate::{Light, Medium};
+use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 
@@ -112,11 +112,11 @@ trait Prepare: Sized {
     /// What it is at a point.
     type At: Scatter;
     /// From validated parameters.
-    fn prepare(params: &Params) -> Self;
+    fn prepare(params: &Params, palette: &Palette) -> Self;
     /// With the values of its texture rows, in table order.
-    fn at(&self, slots: &[Light], interface: Interface) -> Self::At;
+    fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> Self::At;
     /// The filling, if the surface bounds one.
-    fn medium(&self) -> Option<Medium> {
+    fn medium(&self) -> Option<&Medium> {
         None
     }
 }
@@ -184,9 +184,9 @@ macro_rules! models {
 
         impl BsdfModel {
             /// From validated parameters; `None` if the type is not a material's.
-            pub fn prepare(params: &Params) -> Option<Self> {
+            pub fn prepare(params: &Params, palette: &Palette) -> Option<Self> {
                 $(if params.spec().name == $module::SPEC.name {
-                    return Some(BsdfModel::$Name(Prepare::prepare(params)));
+                    return Some(BsdfModel::$Name(Prepare::prepare(params, palette)));
                 })*
                 None
             }
@@ -202,14 +202,14 @@ macro_rules! models {
             /// [`Lanes::parameter`](crate::Lanes::parameter)), black for one that is absent; `interface` the refractive
             /// indices on both sides (the same twice where the surface bounds no medium).
             #[inline]
-            pub fn at(&self, slots: &[Light], interface: Interface) -> Bsdf {
+            pub fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> Bsdf {
                 match self {
-                    $(BsdfModel::$Name(m) => Bsdf::$Name(m.at(slots, interface))),*
+                    $(BsdfModel::$Name(m) => Bsdf::$Name(m.at(lanes, slots, interface))),*
                 }
             }
 
             /// What fills the body, if its surface is a boundary between media.
-            pub fn medium(&self) -> Option<Medium> {
+            pub fn medium(&self) -> Option<&Medium> {
                 match self {
                     $(BsdfModel::$Name(m) => m.medium()),*
                 }

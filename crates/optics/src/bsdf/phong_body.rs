@@ -3,7 +3,7 @@
 
 use super::boundary::{DeltaPair, Fresnel, Split, pick};
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::{Light, Medium};
+use crate::{Lanes, Light, Medium, Palette, Spectrum};
 use core::f32::consts::PI;
 use core::marker::PhantomData;
 use kirkas_geometry::Vec3;
@@ -79,7 +79,7 @@ pub struct Body<H> {
 impl<H: Highlight> Prepare for Prepared<H> {
     type At = Body<H>;
 
-    fn prepare(params: &Params) -> Self {
+    fn prepare(params: &Params, _: &Palette) -> Self {
         let form = if params.text("form") == Some("classic") { Form::Classic } else { Form::Normalized };
         Prepared {
             form,
@@ -88,7 +88,7 @@ impl<H: Highlight> Prepare for Prepared<H> {
             medium: Medium {
                 ior: params.f32("ior"),
                 priority: params.integer("priority") as i32,
-                absorption: [0.0; 3],
+                absorption: Spectrum::BLACK,
             },
             // A texture may transmit anywhere.
             transmits: params.has("transmit") && params.optional_color("transmit") != Some([0.0; 3]),
@@ -96,7 +96,7 @@ impl<H: Highlight> Prepare for Prepared<H> {
         }
     }
 
-    fn at(&self, slots: &[Light], interface: Interface) -> Body<H> {
+    fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> Body<H> {
         let transmit = if self.transmits { slots[TRANSMIT] } else { Light::BLACK };
         let split = Split { reflect: slots[REFLECT], transmit, fresnel: self.fresnel };
         Body {
@@ -111,8 +111,8 @@ impl<H: Highlight> Prepare for Prepared<H> {
         }
     }
 
-    fn medium(&self) -> Option<Medium> {
-        self.transmits.then_some(self.medium)
+    fn medium(&self) -> Option<&Medium> {
+        self.transmits.then_some(&self.medium)
     }
 }
 

@@ -39,7 +39,7 @@ use super::dielectric::{ABSORPTION, FRESNEL, IOR, PRIORITY, REFLECTANCE_ROW, TRA
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
 use crate::fresnel::{reflect, refract};
 use crate::microfacet::Ggx;
-use crate::{Light, Medium};
+use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
@@ -83,10 +83,10 @@ pub struct RoughDielectric {
 
 impl Prepare for Prepared {
     type At = RoughDielectric;
-    fn prepare(params: &Params) -> Self {
-        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params) }
+    fn prepare(params: &Params, palette: &Palette) -> Self {
+        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params, palette) }
     }
-    fn at(&self, slots: &[Light], interface: Interface) -> RoughDielectric {
+    fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> RoughDielectric {
         let (above, mut below) = (interface.eta_above, interface.eta_below);
         if (below / above - 1.0).abs() < LEAST_CONTRAST {
             below = above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST };
@@ -97,8 +97,8 @@ impl Prepare for Prepared {
             interface: Interface { eta_above: above, eta_below: below },
         }
     }
-    fn medium(&self) -> Option<Medium> {
-        Some(self.medium)
+    fn medium(&self) -> Option<&Medium> {
+        Some(&self.medium)
     }
 }
 

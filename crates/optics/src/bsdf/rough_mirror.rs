@@ -35,9 +35,9 @@
 use super::boundary::Fresnel;
 use super::mirror::metal;
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::Light;
 use crate::fresnel::reflect;
 use crate::microfacet::Ggx;
+use crate::{Lanes, Light, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
@@ -73,10 +73,10 @@ pub struct RoughMirror {
 
 impl Prepare for Prepared {
     type At = RoughMirror;
-    fn prepare(params: &Params) -> Self {
+    fn prepare(params: &Params, _: &Palette) -> Self {
         Prepared { fresnel: Fresnel::of(params.text("fresnel")) }
     }
-    fn at(&self, slots: &[Light], _: Interface) -> RoughMirror {
+    fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> RoughMirror {
         RoughMirror { reflectance: slots[REFLECTANCE], facets: Ggx::new(slots[ROUGHNESS][0]), fresnel: self.fresnel }
     }
 }

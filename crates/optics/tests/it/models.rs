@@ -2,7 +2,7 @@
 
 use kirkas_geometry::Vec3;
 use kirkas_optics::bsdf::texture_rows;
-use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, SPECS};
+use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Palette, SPECS};
 use kirkas_scene::{Catalog, Entity, Kind, Map, ParamType, Params, TypeSpec, Value};
 
 /// A model with parameters, between two media.
@@ -33,7 +33,7 @@ pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
     let catalog = Catalog { types: SPECS.iter().collect(), common: Vec::new() };
     let entity = Entity::new("it", type_name, params.clone());
     let params = Params::new(&entity, Kind::Material, &catalog).expect("a listed model");
-    let model = BsdfModel::prepare(&params).expect("a listed model");
+    let model = BsdfModel::prepare(&params, &Palette::RGB).expect("a listed model");
     let rgb = |v: f64| [v as f32; 3];
     let slots: Vec<Light> = texture_rows(model.spec())
         .map(|row| {
@@ -46,7 +46,7 @@ pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
         .collect();
     let below = model.medium().map_or(outside, |m| m.ior);
     let interface = Interface { eta_above: outside, eta_below: below };
-    let bsdf = model.at(&slots, interface);
+    let bsdf = model.at(&Lanes::RGB, &slots, interface);
     let classic = params.entity.params.get("form").and_then(|n| n.text()) == Some("classic");
     let constant_pane =
         params.entity.params.get("fresnel").map_or(type_name.contains("phong"), |n| n.text() == Some("constant"))
@@ -166,7 +166,7 @@ fn a_type_that_is_no_material_is_no_model() {
     static OTHER: TypeSpec = TypeSpec { kind: Kind::Material, name: "velvet", doc: "", params: &[] };
     let catalog = Catalog { types: vec![&OTHER], common: Vec::new() };
     let entity = Entity::new("it", "velvet", Map::default());
-    assert!(BsdfModel::prepare(&Params::new(&entity, Kind::Material, &catalog).unwrap()).is_none());
+    assert!(BsdfModel::prepare(&Params::new(&entity, Kind::Material, &catalog).unwrap(), &Palette::RGB).is_none());
 }
 
 #[test]
@@ -189,15 +189,15 @@ fn media_are_read_from_the_rows() {
     let glass =
         parse(&[("ior", Value::Float(1.7)), ("priority", Value::Int(3)), ("absorption", Value::from([0.1, 0.2, 0.3]))]);
     for name in ["dielectric", "rough_dielectric"] {
-        let m = build(name, &glass, 1.0).model.medium().unwrap();
-        assert_eq!((m.ior, m.priority, m.absorption), (1.7, 3, [0.1, 0.2, 0.3]));
+        let m = build(name, &glass, 1.0).model.medium().cloned().unwrap();
+        assert_eq!((m.ior, m.priority, m.absorption.rgb()), (1.7, 3, [0.1, 0.2, 0.3]));
     }
     for name in ["phong", "blinn_phong"] {
         let with = |v: Value| {
             build(name, &parse(&[("transmit", v), ("ior", Value::Float(1.3)), ("priority", Value::Int(2))]), 1.0)
         };
-        let m = with(Value::Float(0.5)).model.medium().unwrap();
-        assert_eq!((m.ior, m.priority, m.absorption), (1.3, 2, [0.0; 3]));
+        let m = with(Value::Float(0.5)).model.medium().cloned().unwrap();
+        assert_eq!((m.ior, m.priority, m.absorption.rgb()), (1.3, 2, [0.0; 3]));
         assert!(with(Value::from("a_texture")).model.medium().is_some());
         assert!(with(Value::Float(0.0)).model.medium().is_none());
         assert!(build(name, &Map::default(), 1.0).model.medium().is_none());

@@ -6,7 +6,7 @@ pub mod whitted;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::Ray;
-use kirkas_optics::Light;
+use kirkas_optics::{Lanes, Light};
 use kirkas_scene::TypeSpec;
 
 /// Every integrator type.
@@ -67,6 +67,8 @@ pub enum RayKind {
 pub struct PathState {
     /// The ray to trace next.
     pub ray: Ray,
+    /// What its lanes of light are.
+    pub lanes: Lanes,
     /// What light found at its end is multiplied by.
     pub throughput: Light,
     /// Bounces so far.
@@ -88,6 +90,8 @@ pub struct PathState {
 pub struct ShadowRay {
     /// From the surface to the light.
     pub ray: Ray,
+    /// What its lanes of light are.
+    pub lanes: Lanes,
     /// What is added to the pixel if nothing blocks it.
     pub light: Light,
     /// Light group.

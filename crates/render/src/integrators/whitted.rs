@@ -113,12 +113,13 @@ impl Integrator for Whitted {
 
         // Weaken the path by the body it went through.
         if let Some(hit) = hit {
-            path.throughput *= scene.clearness(&path.media, f64::from(hit.t * path.ray.direction.length()));
+            path.throughput *=
+                scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
         }
 
         // What left the scene sees the background.
         let Some(hit) = hit else {
-            let sky = scene.background.radiance(path.ray.direction);
+            let sky = scene.background.radiance(&path.lanes, path.ray.direction);
             out.contributions.push((path.throughput * sky, scene.background_group));
             out.end = Some(PathEnd::Escaped);
             return;
@@ -141,7 +142,7 @@ impl Integrator for Whitted {
         }
 
         // A surface that shines is seen.
-        let emitted = scene.emitted(hit);
+        let emitted = scene.emitted(&path.lanes, hit);
         if !emitted.is_black() {
             out.contributions.push((path.throughput * emitted, hit.emission_group));
         }
@@ -175,7 +176,7 @@ impl Whitted {
     /// The surface's scattering, with the bodies on both its sides.
     fn bsdf(&self, scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
         let material = scene.material(hit);
-        let interface = match material.medium {
+        let interface = match &material.medium {
             Some(inside) => {
                 let others = if hit.is_front { path.media } else { path.media.left(hit.material) };
                 let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
@@ -185,7 +186,7 @@ impl Whitted {
             }
             None => Interface::VACUUM,
         };
-        scene.bsdf(hit, interface)
+        scene.bsdf(&path.lanes, hit, interface)
     }
 
     fn add_ambient(&self, scene: &Scene, path: &PathState, bsdf: &Bsdf, out: &mut StepOutput) {
@@ -194,7 +195,7 @@ impl Whitted {
             return;
         }
         for (light, group) in &scene.ambient {
-            out.contributions.push((path.throughput * albedo * *light * self.ambient, *group));
+            out.contributions.push((path.throughput * albedo * light.at(&path.lanes) * self.ambient, *group));
         }
     }
 
@@ -228,7 +229,8 @@ impl Whitted {
             let purpose = combine(path.branch, light.hash);
             for i in 0..count {
                 let u = sampler.pair_of(purpose, i, count);
-                let Some(s) = scene.sample_light(light, hit.position, f64::from(path.ray.time), u) else { continue };
+                let time = f64::from(path.ray.time);
+                let Some(s) = scene.sample_light(&path.lanes, light, hit.position, time, u) else { continue };
                 let wi = hit.frame.to_local(s.direction.as_vec3());
                 let f = bsdf.eval(wo, wi, lobes, Mode::Radiance);
                 let weight = path.throughput * f * s.light * (wi.z.abs() / count as f32);
@@ -244,14 +246,18 @@ impl Whitted {
                 };
                 // What a straight ray meets weakens it as it goes; otherwise it stays in one body all the way.
                 let is_filtered = self.shadows == Shadows::Transparent;
-                let weight =
-                    if is_filtered { weight } else { weight * scene.clearness(&media, s.distance(hit.position)) };
+                let weight = if is_filtered {
+                    weight
+                } else {
+                    weight * scene.clearness(&path.lanes, &media, s.distance(hit.position))
+                };
                 if self.shadows == Shadows::None {
                     out.contributions.push((weight, light.group));
                     continue;
                 }
                 out.shadow_rays.push(ShadowRay {
                     ray: hit.shadow_ray(&s, &path.ray),
+                    lanes: path.lanes,
                     light: weight,
                     group: light.group,
                     branch: path.branch,
@@ -330,6 +336,7 @@ impl Whitted {
         };
         out.paths.push(PathState {
             ray: hit.ray_towards(direction, &path.ray),
+            lanes: path.lanes,
             throughput,
             depth: path.depth + 1,
             kind,

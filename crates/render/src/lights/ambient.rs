@@ -17,7 +17,7 @@
 //! Phong 1975.
 
 use super::point::COLOR;
-use kirkas_optics::{Lanes, Light};
+use kirkas_optics::{Palette, Spectrum};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -30,6 +30,6 @@ pub const SPEC: TypeSpec = TypeSpec {
 };
 
 /// What every surface gains, times its ambient colour.
-pub fn radiance(p: &Params) -> Light {
-    Lanes::RGB.illuminant(p.color("color").map(|c| (c * p.number("intensity")) as f32))
+pub fn radiance(p: &Params, palette: &Palette) -> Spectrum {
+    palette.illuminant(p.color("color").map(|c| (c * p.number("intensity")) as f32))
 }

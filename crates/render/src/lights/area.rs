@@ -9,6 +9,7 @@ use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::rounding::gamma;
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
+use kirkas_optics::Lanes;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -35,6 +36,7 @@ impl AreaLight {
     /// A point of the surface as seen from `from`.
     pub fn sample(
         &self,
+        lanes: &Lanes,
         materials: &[Material],
         textures: &Textures,
         from: DVec3,
@@ -60,7 +62,7 @@ impl AreaLight {
         let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
         // The shadow ray ends short of the lamp, so the lamp's own opacity counts here.
         let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
-        let radiance = emission.radiance(textures, &at, self.per_power()) * opacity;
+        let radiance = emission.radiance(lanes, textures, &at, self.per_power()) * opacity;
         let target = Target {
             position: s.position,
             error: s.position.abs() * f64::from(gamma(4)) + from.abs() * f64::from(gamma(2)),
@@ -111,7 +113,7 @@ impl AreaLight {
             let s = self.surface.sample_area(owen_sobol_2d(i, 0))?;
             let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
             let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
-            Some(emission.radiance(textures, &at, self.per_power()).sum())
+            Some(emission.radiance(&Lanes::RGB, textures, &at, self.per_power()).sum())
         };
         let mean = (0..count).filter_map(radiance).sum::<f64>() / f64::from(count);
         PI * self.area * sides * mean

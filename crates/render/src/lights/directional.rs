@@ -21,7 +21,7 @@ use super::point::COLOR;
 use super::{LightSample, units};
 use core::f64::consts::PI;
 use kirkas_geometry::DVec3;
-use kirkas_optics::Light;
+use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -46,16 +46,16 @@ pub const SPEC: TypeSpec = TypeSpec {
 #[derive(Clone)]
 pub struct DirectionalLight {
     towards: DVec3,
-    irradiance: Light,
+    irradiance: Spectrum,
 }
 
 impl DirectionalLight {
     /// From its parameters.
-    pub fn new(p: &Params) -> Self {
+    pub fn new(p: &Params, palette: &Palette) -> Self {
         let unit = p.text("unit").unwrap_or("plain");
         DirectionalLight {
             towards: -DVec3::from_array(p.vector("direction")).normalize_or(DVec3::NEG_Y),
-            irradiance: units::light(p.number("intensity"), p.color("color"), unit, 1.0),
+            irradiance: units::light(palette, p.number("intensity"), p.color("color"), unit, 1.0),
         }
     }
 
@@ -65,7 +65,7 @@ impl DirectionalLight {
     }
 
     /// What arrives anywhere.
-    pub fn sample(&self) -> Option<LightSample> {
-        Some(LightSample { direction: self.towards, target: None, light: self.irradiance, pdf: 0.0 })
+    pub fn sample(&self, lanes: &Lanes) -> Option<LightSample> {
+        Some(LightSample { direction: self.towards, target: None, light: self.irradiance.at(lanes), pdf: 0.0 })
     }
 }

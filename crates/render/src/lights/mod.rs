@@ -24,7 +24,7 @@ use crate::materials::Material;
 use crate::textures::Textures;
 use kirkas_geometry::DVec3;
 use kirkas_geometry::hash::of_name;
-use kirkas_optics::Light;
+use kirkas_optics::{Lanes, Light, Palette};
 use kirkas_scene::{Fallback, ParamSpec, ParamType, Params, TypeSpec};
 use std::sync::Arc;
 
@@ -105,11 +105,11 @@ impl LightEntry {
 
 impl Lamp {
     /// From a light's parameters; `None` for ambient light, which has no place.
-    pub fn new(params: &Params) -> Option<Lamp> {
+    pub fn new(params: &Params, palette: &Palette) -> Option<Lamp> {
         match params.spec().name {
-            "point" => Some(Lamp::Point(point::PointLight::new(params))),
-            "spot" => Some(Lamp::Spot(spot::SpotLight::new(params))),
-            "directional" => Some(Lamp::Directional(directional::DirectionalLight::new(params))),
+            "point" => Some(Lamp::Point(point::PointLight::new(params, palette))),
+            "spot" => Some(Lamp::Spot(spot::SpotLight::new(params, palette))),
+            "directional" => Some(Lamp::Directional(directional::DirectionalLight::new(params, palette))),
             _ => None,
         }
     }
@@ -117,6 +117,7 @@ impl Lamp {
     /// A way in which its light reaches `from`, at `time`.
     pub fn sample(
         &self,
+        lanes: &Lanes,
         materials: &[Material],
         textures: &Textures,
         from: DVec3,
@@ -124,11 +125,11 @@ impl Lamp {
         u: (f32, f32),
     ) -> Option<LightSample> {
         match self {
-            Lamp::Point(l) => l.sample(from),
-            Lamp::Spot(l) => l.sample(from),
-            Lamp::Directional(l) => l.sample(),
-            Lamp::Area(l) => l.sample(materials, textures, from, time, u),
-            Lamp::Background(l) => l.sample(u),
+            Lamp::Point(l) => l.sample(lanes, from),
+            Lamp::Spot(l) => l.sample(lanes, from),
+            Lamp::Directional(l) => l.sample(lanes),
+            Lamp::Area(l) => l.sample(lanes, materials, textures, from, time, u),
+            Lamp::Background(l) => l.sample(lanes, u),
         }
     }
 

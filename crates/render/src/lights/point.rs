@@ -21,7 +21,7 @@
 use super::{LightSample, Target, units};
 use core::f64::consts::PI;
 use kirkas_geometry::DVec3;
-use kirkas_optics::Light;
+use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
 
@@ -58,17 +58,17 @@ pub const SPEC: TypeSpec = TypeSpec {
 #[derive(Clone)]
 pub struct PointLight {
     position: DVec3,
-    intensity: Light,
+    intensity: Spectrum,
     attenuation: Option<[f64; 3]>,
 }
 
 impl PointLight {
     /// From its parameters.
-    pub fn new(p: &Params) -> Self {
+    pub fn new(p: &Params, palette: &Palette) -> Self {
         let unit = p.text("unit").unwrap_or("plain");
         PointLight {
             position: DVec3::from_array(p.vector("position")),
-            intensity: units::light(p.number("intensity"), p.color("color"), unit, 4.0 * PI),
+            intensity: units::light(palette, p.number("intensity"), p.color("color"), unit, 4.0 * PI),
             attenuation: p.optional_vector("attenuation"),
         }
     }
@@ -79,9 +79,9 @@ impl PointLight {
     }
 
     /// What arrives at `from`.
-    pub fn sample(&self, from: DVec3) -> Option<LightSample> {
+    pub fn sample(&self, lanes: &Lanes, from: DVec3) -> Option<LightSample> {
         let (direction, r) = towards(self.position, from)?;
-        let light = self.intensity * units::falloff(self.attenuation, r) as f32;
+        let light = self.intensity.at(lanes) * units::falloff(self.attenuation, r) as f32;
         Some(LightSample { direction, target: Some(point_target(self.position)), light, pdf: 0.0 })
     }
 }

@@ -26,7 +26,7 @@ use super::{LightSample, units};
 use core::f64::consts::PI;
 use kirkas_geometry::DVec3;
 use kirkas_geometry::elementary::cos;
-use kirkas_optics::Light;
+use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
 /// The table.
@@ -55,13 +55,13 @@ pub struct SpotLight {
     axis: DVec3,
     cos_hotspot: f64,
     cos_falloff: f64,
-    intensity: Light,
+    intensity: Spectrum,
     attenuation: Option<[f64; 3]>,
 }
 
 impl SpotLight {
     /// From its parameters.
-    pub fn new(p: &Params) -> Self {
+    pub fn new(p: &Params, palette: &Palette) -> Self {
         let cosine = |name| cos(f64::to_radians(p.number(name)));
         let cos_falloff = cosine("falloff_angle");
         let cos_hotspot = cosine("hotspot").max(cos_falloff);
@@ -72,7 +72,7 @@ impl SpotLight {
             axis: DVec3::from_array(p.vector("direction")).normalize_or(DVec3::NEG_Y),
             cos_hotspot,
             cos_falloff,
-            intensity: units::light(p.number("intensity"), p.color("color"), unit, solid_angle),
+            intensity: units::light(palette, p.number("intensity"), p.color("color"), unit, solid_angle),
             attenuation: p.optional_vector("attenuation"),
         }
     }
@@ -95,10 +95,10 @@ impl SpotLight {
     }
 
     /// What arrives at `from`.
-    pub fn sample(&self, from: DVec3) -> Option<LightSample> {
+    pub fn sample(&self, lanes: &Lanes, from: DVec3) -> Option<LightSample> {
         let (direction, r) = towards(self.position, from)?;
         let share = self.profile(-direction.dot(self.axis));
-        let light = self.intensity * (share * units::falloff(self.attenuation, r)) as f32;
+        let light = self.intensity.at(lanes) * (share * units::falloff(self.attenuation, r)) as f32;
         let target = Some(point_target(self.position));
         (share > 0.0).then_some(LightSample { direction, target, light, pdf: 0.0 })
     }

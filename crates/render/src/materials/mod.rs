@@ -4,7 +4,7 @@
 use crate::lights::units::EFFICACY;
 use crate::textures::{ColorSource, NumberSource, TextureNames, TexturePoint, Textures};
 use kirkas_optics::bsdf::texture_rows;
-use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Medium};
+use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Medium, Palette, Spectrum};
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{ParamSpec, ParamType, Params};
 
@@ -25,8 +25,6 @@ pub struct Material {
     pub name: String,
     model: BsdfModel,
     rows: Vec<Row>,
-    /// The rows' values where they are the same everywhere; textures fill in the others.
-    slots: [Light; MOST_ROWS],
     alpha: NumberSource,
     /// What it emits.
     pub emission: Option<Emission>,
@@ -39,33 +37,63 @@ pub struct Material {
 /// One texture row of the model.
 struct Row {
     spec: &'static ParamSpec,
-    /// `None` where it is absent.
-    source: Option<ColorSource>,
+    value: Value,
+}
+
+/// What a row says.
+enum Value {
+    Absent,
+    /// The same number everywhere.
+    Number(f32),
+    /// The same colour everywhere.
+    Color(Spectrum),
+    /// Look it up, by number.
+    Texture(u32),
 }
 
 impl Row {
-    fn value(&self, textures: &Textures, at: &TexturePoint) -> Light {
-        self.source.map_or(Light::BLACK, |s| Lanes::RGB.parameter(self.spec, textures.color(s, at)))
+    fn new(spec: &'static ParamSpec, source: Option<ColorSource>, palette: &Palette) -> Self {
+        let value = match (source, spec.ty) {
+            (None, _) => Value::Absent,
+            (Some(ColorSource::Texture(number)), _) => Value::Texture(number),
+            (Some(ColorSource::Constant(c)), ParamType::NumberTexture) => {
+                Value::Number(Lanes::RGB.parameter(spec, c)[0])
+            }
+            (Some(ColorSource::Constant(c)), _) if spec.range.1 <= 1.0 => Value::Color(palette.reflectance(c)),
+            (Some(ColorSource::Constant(c)), _) => Value::Color(palette.unbounded(c)),
+        };
+        Row { spec, value }
     }
 
-    fn constant(&self) -> Light {
-        match self.source {
-            Some(ColorSource::Constant(c)) => Lanes::RGB.parameter(self.spec, c),
-            _ => Light::BLACK,
+    #[inline]
+    fn at(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> Light {
+        match &self.value {
+            Value::Absent => Light::BLACK,
+            Value::Number(x) => Light::splat(*x),
+            Value::Color(spectrum) => spectrum.at(lanes),
+            Value::Texture(number) => lanes.parameter(self.spec, textures.color(ColorSource::Texture(*number), at)),
         }
     }
 }
 
 /// What a surface emits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Emission {
-    radiance: ColorSource,
+    radiance: Radiance,
     intensity: f64,
     unit: Unit,
     /// Also from its back.
     pub two_sided: bool,
     /// Shadow rays per point.
     pub samples: u32,
+}
+
+#[derive(Clone, Debug)]
+enum Radiance {
+    /// The same everywhere.
+    Constant(Spectrum),
+    /// Look it up, by number.
+    Texture(u32),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,27 +106,25 @@ enum Unit {
 
 impl Material {
     /// From its parameters; `None` if the type is not a model's.
-    pub fn new(params: &Params, names: &TextureNames) -> Option<Material> {
-        let model = BsdfModel::prepare(params)?;
+    pub fn new(params: &Params, names: &TextureNames, palette: &Palette) -> Option<Material> {
+        let model = BsdfModel::prepare(params, palette)?;
         let source = |row: &'static ParamSpec| match (row.ty, row.fallback) {
             (ParamType::NumberTexture, _) => Some(names.number(params, row.name).into()),
             (_, kirkas_scene::Fallback::Absent) => names.optional_color(params, row.name),
             _ => Some(names.color(params, row.name)),
         };
-        let rows: Vec<Row> = texture_rows(params.spec()).map(|spec| Row { spec, source: source(spec) }).collect();
+        let rows: Vec<Row> = texture_rows(params.spec()).map(|spec| Row::new(spec, source(spec), palette)).collect();
         debug_assert!(rows.len() <= MOST_ROWS);
-        let slots = std::array::from_fn(|i| rows.get(i).map_or(Light::BLACK, Row::constant));
-        let medium = model.medium();
+        let medium = model.medium().cloned();
         let is_constant =
             params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,
-            slots,
             alpha: names.number(params, "alpha"),
-            emission: (params.spec().name == "emitter").then(|| Emission::new(params, names)),
+            emission: (params.spec().name == "emitter").then(|| Emission::new(params, names, palette)),
+            radiance_gain: medium.as_ref().filter(|_| !is_constant).map_or(1.0, |m| m.ior * m.ior),
             medium,
-            radiance_gain: medium.filter(|_| !is_constant).map_or(1.0, |m| m.ior * m.ior),
             model,
         })
     }
@@ -114,40 +140,42 @@ impl Material {
     }
 
     /// The model at a point.
-    pub fn bsdf(&self, textures: &Textures, at: &TexturePoint, interface: Interface) -> Bsdf {
-        let mut slots = self.slots;
+    pub fn bsdf(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint, interface: Interface) -> Bsdf {
+        let mut slots = [Light::BLACK; MOST_ROWS];
         for (slot, row) in slots.iter_mut().zip(&self.rows) {
-            if matches!(row.source, Some(ColorSource::Texture(_))) {
-                *slot = row.value(textures, at);
-            }
+            *slot = row.at(lanes, textures, at);
         }
-        self.model.at(&slots[..self.rows.len()], interface)
+        self.model.at(lanes, &slots[..self.rows.len()], interface)
     }
 
     /// What a straight shadow ray keeps on its way through the surface (the classics' coloured shadows): the constant or
     /// tint of transmission, without Fresnel or bending; `None` for surfaces that bound no body.
-    pub fn straight_transmittance(&self, textures: &Textures, at: &TexturePoint) -> Option<Light> {
-        self.medium?;
+    pub fn straight_transmittance(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> Option<Light> {
+        self.medium.as_ref()?;
         let named = |n: &str| self.rows.iter().find(|row| row.spec.name == n);
         let row = named("transmittance").or_else(|| named("transmit"))?;
-        Some(row.value(textures, at))
+        Some(row.at(lanes, textures, at))
     }
 
     /// Colour for the albedo AOV: what ambient light is multiplied by, or the first colour of clear and mirroring surfaces.
     pub fn albedo(&self, textures: &Textures, at: &TexturePoint) -> [f32; 3] {
-        let ambient = self.bsdf(textures, at, Interface::VACUUM).ambient();
+        let ambient = self.bsdf(&Lanes::RGB, textures, at, Interface::VACUUM).ambient();
         if !ambient.is_black() {
             return Lanes::RGB.to_film(ambient);
         }
-        let first = self.rows.iter().find(|row| row.spec.ty == ParamType::ColorTexture && row.source.is_some());
-        first.and_then(|row| row.source).map_or([0.0; 3], |s| textures.color(s, at))
+        let is_color = |row: &&Row| row.spec.ty == ParamType::ColorTexture && !matches!(row.value, Value::Absent);
+        let first = self.rows.iter().find(is_color);
+        first.map_or([0.0; 3], |row| Lanes::RGB.to_film(row.at(&Lanes::RGB, textures, at)))
     }
 }
 
 impl Emission {
-    fn new(p: &Params, names: &TextureNames) -> Self {
+    fn new(p: &Params, names: &TextureNames, palette: &Palette) -> Self {
         Emission {
-            radiance: names.color(p, "radiance"),
+            radiance: match names.color(p, "radiance") {
+                ColorSource::Constant(c) => Radiance::Constant(palette.illuminant(c)),
+                ColorSource::Texture(number) => Radiance::Texture(number),
+            },
             intensity: p.number("intensity"),
             unit: match p.text("unit") {
                 Some("nit") => Unit::Luminance,
@@ -162,12 +190,22 @@ impl Emission {
 
     /// True when it may differ from place to place.
     pub fn is_textured(&self) -> bool {
-        matches!(self.radiance, ColorSource::Texture(_))
+        matches!(self.radiance, Radiance::Texture(_))
     }
 
     /// Radiance at a point; `per_power` is 1 / (pi area) of the whole lamp.
-    pub fn radiance(&self, textures: &Textures, at: &TexturePoint, per_power: f64) -> Light {
-        let color = textures.color(self.radiance, at).map(f64::from);
+    pub fn radiance(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint, per_power: f64) -> Light {
+        let color = match &self.radiance {
+            Radiance::Constant(spectrum) => return spectrum.scaled_at(lanes, self.scale(spectrum.rgb(), per_power)),
+            Radiance::Texture(number) => textures.color(ColorSource::Texture(*number), at),
+        };
+        let scale = self.scale(color, per_power);
+        lanes.illuminant(color.map(|c| (f64::from(c) * scale) as f32))
+    }
+
+    /// What a colour is multiplied by to become radiance.
+    fn scale(&self, color: [f32; 3], per_power: f64) -> f64 {
+        let color = color.map(f64::from);
         let luminance = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
         let mean = (color[0] + color[1] + color[2]) / 3.0;
         let over = |x: f64, by: f64| if by > 0.0 { x / by } else { 0.0 };
@@ -178,6 +216,6 @@ impl Emission {
             Unit::Watt => over(per_power * sides, mean),
             Unit::Lumen => over(per_power * sides, luminance * EFFICACY),
         };
-        Lanes::RGB.illuminant(color.map(|c| (c * scale * self.intensity) as f32))
+        scale * self.intensity
     }
 }

@@ -5,6 +5,7 @@ use kirkas_accel::Query;
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::warp::square_to_uniform_sphere;
 use kirkas_geometry::{DVec3, Ray, Vec3};
+use kirkas_optics::Lanes;
 use kirkas_render::scene::{SECONDARY, Scene, SurfaceHit};
 use kirkas_testkit::{ChiSquare, integrate_sphere};
 use std::f64::consts::PI;
@@ -51,7 +52,9 @@ fn a_ray_towards_a_sampled_point_is_told_the_density_of_the_sample() {
         let mut compared = 0;
         for i in 0..300 {
             let u = owen_sobol_2d(i, 5);
-            let Some(s) = p.scene.sample_light(&p.scene.lights[0], DVec3::ZERO, f64::from(TIME), u) else { continue };
+            let Some(s) = p.scene.sample_light(&Lanes::RGB, &p.scene.lights[0], DVec3::ZERO, f64::from(TIME), u) else {
+                continue;
+            };
             let hit = look(&p.scene, s.direction.as_vec3()).unwrap_or_else(|| panic!("{what}: missed"));
             // A box's own far side is hidden by its near one.
             if (hit.position - s.target.unwrap().position).length() > 1e-3 {
@@ -97,12 +100,12 @@ fn backgrounds_are_sampled_in_proportion_to_what_they_send() {
         let p = sky(words);
         let number = p.scene.background_light.unwrap();
         let light = &p.scene.lights[number as usize];
-        let sample = |u| p.scene.sample_light(light, DVec3::ZERO, 0.0, u);
+        let sample = |u| p.scene.sample_light(&Lanes::RGB, light, DVec3::ZERO, 0.0, u);
         let pdf = |d: Vec3| p.scene.background_pdf(d.as_dvec3().normalize());
         let result = ChiSquare::default().run(|_, u| sample(u).map(|s| s.direction.as_vec3()), pdf);
         assert!(result.p_value > 1e-3, "{words}: {result:?}");
 
-        let total = integrate_sphere(|d| p.scene.background.radiance(d).sum());
+        let total = integrate_sphere(|d| p.scene.background.radiance(&Lanes::RGB, d).sum());
         for i in 0..200 {
             let s = sample(owen_sobol_2d(i, 1)).unwrap();
             let truth = pdf(s.direction.as_vec3());
