@@ -14,6 +14,7 @@
 //! | `kirkas.samples` | which samples of each pixel, such as `0..64` |
 //! | `kirkas.unfinished` | if stopped within a pass: which further samples some pixels have |
 //! | `kirkas.invalid` | samples left out because they were not finite, if any |
+//! | `kirkas.strata` | how many samples per pixel the sampler was made for, if it cannot give more |
 //! | `kirkas.exposure`, `kirkas.tone` | how it is shown on a screen |
 //! | `kirkas.aov` | layers asked for, as typed |
 //! | `kirkas.units` | what the numbers mean |
@@ -29,12 +30,13 @@ const UNITS: &str = "linear, scene-referred, Rec.709 primaries; 1.0 is one unit 
 const PREFIX: &str = "kirkas.";
 
 /// Texts that must agree between pictures that are added, and what is said where they do not.
-const MUST_AGREE: [(&str, &str); 5] = [
+const MUST_AGREE: [(&str, &str); 6] = [
     ("version", "the version of Kirkas"),
     ("scene_hash", "the scene"),
     ("overrides", "the overrides"),
     ("seed", "the seed"),
     ("frame", "the frame"),
+    ("strata", "the number of samples that the sampler was made for"),
 ];
 
 /// Texts that may differ between files of one picture.

@@ -7,9 +7,11 @@
 pub mod bounds;
 pub mod elementary;
 pub mod frame;
+pub mod halton;
 pub mod hash;
 pub mod low_discrepancy;
 pub mod motion;
+pub mod permutation;
 pub mod ray;
 pub mod rounding;
 pub mod transform;

@@ -22,7 +22,7 @@ pub fn owen_sobol_1d(index: u32, seed: u64) -> f32 {
 }
 
 /// Owen's scramble of the digits of a number given with its bits reversed; returns it in normal order.
-fn owen_scramble_reversed(reversed: u32, seed: u32) -> u32 {
+pub(crate) fn owen_scramble_reversed(reversed: u32, seed: u32) -> u32 {
     laine_karras(reversed, seed).reverse_bits()
 }
 

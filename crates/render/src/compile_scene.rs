@@ -114,7 +114,7 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
         integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
         filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
         shift: p.vector2("shift"),
-        sampler: SamplerKind::from_name(s.spec().name).unwrap_or(SamplerKind::Sobol),
+        sampler: SamplerKind::new(&s),
         samples: s.integer("samples") as u32,
         seed: s.integer("seed") as u64,
         frame: options.frame,

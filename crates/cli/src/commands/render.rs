@@ -146,6 +146,9 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
         report::print(&warnings.sources, &warnings.diagnostics);
     }
 
+    let samples = args.samples.clone().unwrap_or(0..prepared.samples);
+    check_limit(&prepared, &samples)?;
+
     // Nothing that the scene was made of may be lost.
     let development = development(args, &prepared, aovs);
     let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| true_place(&scene.root.join(k))).collect();
@@ -157,10 +160,11 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let scene_name = args.scene.scene.to_string_lossy();
     let mut header = Header::new(&scene_name, &scene.files, &overrides, prepared.seed);
     header.set("aov", aov_args::text(&development.aovs));
+    header.set("strata", prepared.sampler.limit().map_or(String::new(), |n| n.to_string()));
     header.set("crop", args.crop.map_or(String::new(), |c| format!("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)));
     let job = Job {
         args,
-        samples: args.samples.clone().unwrap_or(0..prepared.samples),
+        samples,
         development,
         deadline: args.time_limit.and_then(|s| started.checked_add(Duration::try_from_secs_f64(s).ok()?)),
         warnings: warnings.diagnostics,
@@ -250,6 +254,21 @@ fn development(args: &Render, prepared: &Prepared, aovs: Vec<AovArg>) -> Develop
         is_half: args.half,
         keeps_integers: args.samples.is_some(),
         aovs,
+    }
+}
+
+/// Some samplers have only so many samples.
+fn check_limit(prepared: &Prepared, samples: &Range<u32>) -> Result<(), Problem> {
+    match prepared.sampler.limit().filter(|&limit| limit < samples.end) {
+        None => Ok(()),
+        Some(limit) => {
+            let message = format!("this sampler has {limit} samples per pixel, so it cannot give samples {samples:?}");
+            let help = format!(
+                "make it for all of them, with `-D sampler.samples={}`, or take one that goes on and on, such as `sobol`",
+                samples.end
+            );
+            Err(Problem::input(Diagnostic::error("no-more-samples", message).help(help)))
+        }
     }
 }
 

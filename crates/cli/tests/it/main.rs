@@ -11,3 +11,4 @@ mod faults;
 mod films;
 mod interruptions;
 mod pages;
+mod samplers;

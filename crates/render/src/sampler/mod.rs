@@ -4,31 +4,55 @@
 //! Every frame of a film has a seed of its own ([`frame_seed`]): noise that stood still while the picture moves would look
 //! like dirt on the lens, and noise that changes averages out over frames.
 
+mod halton;
 mod independent;
 mod sobol;
+mod stratified;
 
 use kirkas_geometry::hash::{combine, of_name};
-use kirkas_scene::TypeSpec;
+use kirkas_scene::{Params, TypeSpec};
 
 /// Every sampler type.
-pub const SAMPLERS: &[&TypeSpec] = &[&sobol::SPEC, &independent::SPEC];
+pub const SAMPLERS: &[&TypeSpec] = &[&sobol::SPEC, &halton::SPEC, &stratified::SPEC, &independent::SPEC];
 
 /// Which sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SamplerKind {
     /// Owen-scrambled Sobol' pairs.
     Sobol,
+    /// Owen-scrambled Halton pairs.
+    Halton,
+    /// Multi-jittered samples.
+    Stratified {
+        /// How many there are, for each pixel.
+        samples: u32,
+    },
     /// Independent random numbers.
     Independent,
 }
 
 impl SamplerKind {
-    /// By its name in [`SAMPLERS`].
-    pub fn from_name(name: &str) -> Option<Self> {
+    /// By the name of one of [`SAMPLERS`], for so many samples per pixel.
+    pub fn from_name(name: &str, samples: u32) -> Option<Self> {
         match name {
             "sobol" => Some(SamplerKind::Sobol),
+            "halton" => Some(SamplerKind::Halton),
+            "stratified" => Some(SamplerKind::Stratified { samples }),
             "independent" => Some(SamplerKind::Independent),
             _ => None,
+        }
+    }
+
+    /// From its parameters.
+    pub fn new(p: &Params) -> Self {
+        Self::from_name(p.spec().name, p.integer("samples") as u32).unwrap_or(SamplerKind::Sobol)
+    }
+
+    /// The number of samples per pixel that it is made for, if it cannot give more.
+    pub fn limit(self) -> Option<u32> {
+        match self {
+            SamplerKind::Stratified { samples } => Some(samples),
+            SamplerKind::Sobol | SamplerKind::Halton | SamplerKind::Independent => None,
         }
     }
 }
@@ -67,6 +91,11 @@ impl Sampler {
         let seed = combine(self.pixel_seed, purpose);
         match self.kind {
             SamplerKind::Sobol => sobol::pair(index, seed),
+            SamplerKind::Halton => halton::pair(index, seed),
+            SamplerKind::Stratified { samples } => {
+                let (total, index) = (u64::from(samples) * u64::from(count), u64::from(self.index));
+                stratified::pair((index * u64::from(count) + u64::from(i)) % total, total, seed)
+            }
             SamplerKind::Independent => independent::pair(index, seed),
         }
     }
@@ -88,7 +117,7 @@ mod tests {
 
     #[test]
     fn every_listed_sampler_has_a_kind() {
-        assert!(SAMPLERS.iter().all(|s| SamplerKind::from_name(s.name).is_some()));
+        assert!(SAMPLERS.iter().all(|s| SamplerKind::from_name(s.name, 4).is_some()));
     }
 
     #[test]

@@ -20,11 +20,12 @@
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_scene::{Kind, ParamSpec, TypeSpec};
 
-/// The rows that every sampler takes.
-pub const ROWS: &[ParamSpec] = &[
-    ParamSpec::integer("samples", 16, (1.0, 1_073_741_824.0), "Samples per pixel."),
-    ParamSpec::integer("seed", 0, (0.0, 9.0e15), "Another seed gives another, equally good picture."),
-];
+/// The rows of samplers to whose samples more can be added.
+pub const ROWS: &[ParamSpec] = &[ParamSpec::integer("samples", 16, (1.0, 1_073_741_824.0), "Samples per pixel."), SEED];
+
+/// The row that every sampler takes.
+pub const SEED: ParamSpec =
+    ParamSpec::integer("seed", 0, (0.0, 9.0e15), "Another seed gives another, equally good picture.");
 
 /// The table.
 pub const SPEC: TypeSpec =

@@ -10,6 +10,7 @@ mod light_sampling;
 mod manuals;
 mod numbers;
 mod observer;
+mod samplers;
 mod scale;
 mod shapes;
 mod shapes_areas;
