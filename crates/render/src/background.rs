@@ -4,6 +4,9 @@
 //! A background is sampled exactly in proportion to what it sends (all lanes together): it is linear in the sine of the elevation
 //! between stops, and so is the density.
 
+pub mod image;
+pub mod map_distribution;
+
 use crate::lights::LightSample;
 use core::f64::consts::{PI, TAU};
 use kirkas_geometry::elementary::{cos, sin};

@@ -11,13 +11,17 @@
 mod ambient;
 mod area;
 pub(crate) mod collect;
+mod cone;
 mod directional;
 pub mod pick;
 mod point;
 mod spot;
+pub mod tree;
+mod tree_build;
 pub mod units;
 
 pub use area::{AreaLight, area_growth};
+pub use cone::Cone;
 
 use crate::background::Background;
 use crate::materials::Material;

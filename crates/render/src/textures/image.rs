@@ -32,10 +32,10 @@
 //!
 //! sRGB: IEC 61966-2-1:1999, decoded exactly and before filtering.
 
-use super::{PatternPoint, TextureInput, mean};
+use super::{PatternPoint, TextureInput, TextureNames, mean};
 use kirkas_images::srgb::{srgb_to_linear, srgb8_to_linear};
 use kirkas_images::{DecodedImage, Pixels, decode};
-use kirkas_scene::{Diagnostic, Fallback, Kind, ParamSpec, ParamType, Span, TypeSpec};
+use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, Span, TypeSpec};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -90,11 +90,6 @@ enum Encoding {
 impl Image {
     pub(super) fn compile(input: &TextureInput, files: &mut ImageFiles) -> Result<Self, Diagnostic> {
         let params = &input.params;
-        let encoding = match params.text("encoding") {
-            Some("srgb") => Encoding::Srgb,
-            Some("linear") => Encoding::Linear,
-            _ => Encoding::Auto,
-        };
         let wrap = match params.text("wrap") {
             Some("clamp") => Wrap::Clamp,
             Some("mirror") => Wrap::Mirror,
@@ -102,7 +97,7 @@ impl Image {
             _ => Wrap::Repeat,
         };
         Ok(Image {
-            texels: files.read(input, encoding)?,
+            texels: files.read(input)?,
             wrap,
             is_bilinear: params.text("filter") != Some("nearest"),
             scale: params.vector2("scale"),
@@ -240,6 +235,28 @@ fn clean(pixel: &mut [f32; 4], encoding: Encoding) {
     }
 }
 
+/// A picture's linear colours, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// In texels.
+    pub width: usize,
+    /// In texels.
+    pub height: usize,
+    /// `width * height` of them, linear Rec.709.
+    pub texels: Vec<[f32; 3]>,
+}
+
+impl From<&Texels> for Picture {
+    fn from(t: &Texels) -> Self {
+        let (width, height) = (t.width as usize, t.height as usize);
+        let color = |i: usize| {
+            let [r, g, b, _] = t.get(i % width, i / width);
+            [r, g, b]
+        };
+        Picture { width, height, texels: (0..width * height).map(color).collect() }
+    }
+}
+
 /// Pictures that have been read: materials name the same one more than once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ImageFiles(BTreeMap<(Folder, String, Encoding), Arc<Texels>>);
@@ -251,7 +268,12 @@ enum Folder {
 }
 
 impl ImageFiles {
-    fn read(&mut self, input: &TextureInput, encoding: Encoding) -> Result<Arc<Texels>, Diagnostic> {
+    fn read(&mut self, input: &TextureInput) -> Result<Arc<Texels>, Diagnostic> {
+        let encoding = match input.params.text("encoding") {
+            Some("srgb") => Encoding::Srgb,
+            Some("linear") => Encoding::Linear,
+            _ => Encoding::Auto,
+        };
         let path = input.params.text("file").unwrap_or_default();
         let span = input.params.span("file");
         let from = span.is_some().then_some(span.source);
@@ -275,6 +297,12 @@ impl ImageFiles {
         self.0.insert(key, texels.clone());
         Ok(texels)
     }
+}
+
+/// The picture that the parameters `file` and `encoding` name.
+pub fn read_picture(params: &Params, assets: &dyn Assets) -> Result<Picture, Diagnostic> {
+    let input = TextureInput { params: *params, names: &TextureNames::default(), assets, folder: None };
+    ImageFiles::default().read(&input).map(|texels| Picture::from(&*texels))
 }
 
 fn unreadable(path: &str, span: Span, error: &kirkas_images::ImageError) -> Diagnostic {

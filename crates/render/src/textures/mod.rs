@@ -12,6 +12,7 @@ mod perlin;
 mod references;
 mod wood;
 
+pub use image::{Picture, read_picture};
 pub use references::{ColorSource, NumberSource, TextureNames};
 
 use checker::Checker;
