@@ -4,8 +4,11 @@
 //! A background is sampled exactly in proportion to what it sends (all lanes together): it is linear in the sine of the elevation
 //! between stops, and so is the density.
 
+pub mod hosek_wilkie;
 pub mod image;
 pub mod map_distribution;
+pub mod sun;
+pub mod sun_sky;
 
 use crate::lights::LightSample;
 use core::f64::consts::{PI, TAU};
@@ -16,7 +19,7 @@ use kirkas_scene::params::read_color;
 use kirkas_scene::{Fallback, Kind, Node, ParamSpec, ParamType, Params, TypeSpec};
 
 /// Every background type.
-pub const BACKGROUNDS: &[&TypeSpec] = &[&CONSTANT, &GRADIENT];
+pub const BACKGROUNDS: &[&TypeSpec] = &[&CONSTANT, &GRADIENT, &sun_sky::SPEC];
 
 /// One colour everywhere.
 pub const CONSTANT: TypeSpec = TypeSpec {

@@ -81,7 +81,7 @@ impl ImageBackground {
 
     /// True when it sends nothing from anywhere.
     pub fn is_black(&self) -> bool {
-        self.map.distribution.is_none() || self.intensity == 0.0
+        self.map.is_black() || self.intensity == 0.0
     }
 
     /// Linear Rec.709 radiance from a direction.
@@ -136,6 +136,11 @@ impl SkyMap {
         };
         let weights = picture.texels.iter().enumerate().map(weight).collect();
         SkyMap { distribution: MapDistribution::new(picture.width, weights), picture, world_from_map }
+    }
+
+    /// True when no texel shines.
+    pub fn is_black(&self) -> bool {
+        self.distribution.is_none()
     }
 
     /// The bilinear interpolation of the texels around a direction (of any length but 0).
