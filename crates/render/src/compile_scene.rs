@@ -227,7 +227,8 @@ fn compile(
         }
     }
     add_area_lights(&mut world, &aggregates, &mut instances, &materials, &object_names, &mut lights, warnings);
-    let background = Arc::new(Background::new(&singles.params(Kind::Background), &palette));
+    let background =
+        Arc::new(Background::new(&singles.params(Kind::Background), &palette, assets).map_err(|d| vec![d])?);
     let background_light = (!background.is_black()).then(|| {
         lights.push(LightEntry::new("background", background_group, 1, Lamp::Background(background.clone())));
         lights.len() as u32 - 1

@@ -84,6 +84,11 @@ impl ImageBackground {
         self.map.is_black() || self.intensity == 0.0
     }
 
+    /// The integral of radiance over all directions, red, green and blue together, W/m2.
+    pub fn total_radiance(&self) -> f64 {
+        self.map.total * f64::from(self.intensity)
+    }
+
     /// Linear Rec.709 radiance from a direction.
     pub fn radiance(&self, direction: DVec3) -> [f32; 3] {
         self.map.color(direction).map(|c| c * self.intensity)
@@ -121,6 +126,8 @@ pub struct SkyMap {
     world_from_map: DMat3,
     /// `None` for a black picture.
     distribution: Option<MapDistribution>,
+    /// Integral over all directions, red, green and blue together.
+    total: f64,
 }
 
 impl SkyMap {
@@ -134,8 +141,10 @@ impl SkyMap {
             let theta = PI * ((i / picture.width) as f64 + 0.5) / rows as f64;
             ((f64::from(c[0]) + f64::from(c[1]) + f64::from(c[2])) * sin(theta)) as f32
         };
-        let weights = picture.texels.iter().enumerate().map(weight).collect();
-        SkyMap { distribution: MapDistribution::new(picture.width, weights), picture, world_from_map }
+        let weights: Vec<f32> = picture.texels.iter().enumerate().map(weight).collect();
+        let per_texel = 2.0 * PI * PI / (rows * picture.width).max(1) as f64;
+        let total = weights.iter().map(|w| f64::from(*w)).sum::<f64>() * per_texel;
+        SkyMap { distribution: MapDistribution::new(picture.width, weights), picture, world_from_map, total }
     }
 
     /// True when no texel shines.

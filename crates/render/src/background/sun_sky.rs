@@ -95,6 +95,8 @@ pub struct SunSky {
     map: Arc<SkyMap>,
     /// How often the sun is sampled.
     sun_share: f64,
+    /// Integral of radiance over all directions, red, green and blue together, W/m2.
+    total: f64,
 }
 
 /// The sun in the sky.
@@ -128,6 +130,7 @@ impl SunSky {
             ground: [0.0; 3],
             map: Arc::new(SkyMap::new(Picture { width: 0, height: 0, texels: Vec::new() }, world_from_compass)),
             sun_share: 0.0,
+            total: 0.0,
         };
         s.light_the_ground(irradiance.map(|e| e * center.dot(up).max(0.0)), albedo);
         s.tabulate(world_from_compass, irradiance);
@@ -164,6 +167,7 @@ impl SunSky {
         let texels = (0..rows * columns).map(&mut texel).collect();
         self.map = Arc::new(SkyMap::new(Picture { width: columns, height: rows, texels }, world_from_compass));
         let sun: f64 = irradiance.iter().sum();
+        self.total = sun + total;
         self.sun_share = match (sun > 0.0, total > 0.0) {
             (true, true) => (sun / (sun + total)).clamp(0.1, 0.9),
             (has_sun, _) => f64::from(u8::from(has_sun)),
@@ -173,6 +177,11 @@ impl SunSky {
     /// True when it sends nothing from anywhere.
     pub fn is_black(&self) -> bool {
         self.sun_share == 0.0 && self.map.is_black()
+    }
+
+    /// The integral of radiance over all directions, red, green and blue together, W/m2.
+    pub fn total_radiance(&self) -> f64 {
+        self.total
     }
 
     /// Linear Rec.709 radiance from a direction (unit), W/(m2 sr).

@@ -1,5 +1,6 @@
 //! Everything that the renderer promises.
 
+mod backgrounds;
 mod bodies;
 mod cameras;
 mod effects;

@@ -8,8 +8,15 @@ use std::fs;
 use std::path::Path;
 
 /// Folders in which one file is one type, beside this crate's own.
-const FOLDERS: [&str; 6] =
-    ["../optics/src/bsdf", "src/shapes", "src/lights", "src/textures", "src/camera", "src/integrators"];
+const FOLDERS: [&str; 7] = [
+    "../optics/src/bsdf",
+    "src/shapes",
+    "src/lights",
+    "src/textures",
+    "src/camera",
+    "src/integrators",
+    "src/background",
+];
 
 /// `(file, example)` for every file with a table.
 fn examples() -> Vec<(String, String)> {

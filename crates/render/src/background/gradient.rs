@@ -1,25 +1,14 @@
-//! Backgrounds: what rays see that hit nothing. Camera, mirror and refraction rays see them; `path` lights surfaces with them as
-//! well, `whitted` does not.
+//! One colour everywhere, or radiance by elevation.
 //!
-//! A background is sampled exactly in proportion to what it sends (all lanes together): it is linear in the sine of the elevation
-//! between stops, and so is the density.
+//! Sampled exactly in proportion to what is sent (all lanes together): that is linear in the sine of the elevation between
+//! stops, and so is the density.
 
-pub mod hosek_wilkie;
-pub mod image;
-pub mod map_distribution;
-pub mod sun;
-pub mod sun_sky;
-
-use crate::lights::LightSample;
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::TAU;
 use kirkas_geometry::elementary::{cos, sin};
 use kirkas_geometry::{DVec3, Vec3};
 use kirkas_optics::{Lanes, Light, Palette, Spectrum};
 use kirkas_scene::params::read_color;
 use kirkas_scene::{Fallback, Kind, Node, ParamSpec, ParamType, Params, TypeSpec};
-
-/// Every background type.
-pub const BACKGROUNDS: &[&TypeSpec] = &[&CONSTANT, &GRADIENT, &sun_sky::SPEC];
 
 /// One colour everywhere.
 pub const CONSTANT: TypeSpec = TypeSpec {
@@ -45,9 +34,9 @@ pub const GRADIENT: TypeSpec = TypeSpec {
     ],
 };
 
-/// A compiled background.
+/// The background.
 #[derive(Clone, Debug)]
-pub struct Background {
+pub struct GradientBackground {
     up: Vec3,
     /// By sine of elevation, rising; one stop stands for all directions.
     stops: Vec<(f32, Spectrum)>,
@@ -66,12 +55,12 @@ struct Piece {
     sum: f64,
 }
 
-impl Background {
+impl GradientBackground {
     /// From its parameters.
     pub fn new(p: &Params, palette: &Palette) -> Self {
         let light = |c: [f64; 3]| palette.illuminant(c.map(|x| x as f32));
         if p.spec().name == "constant" {
-            return Background::of(Vec3::Y, vec![(0.0, light(p.color("color")))]);
+            return GradientBackground::of(Vec3::Y, vec![(0.0, light(p.color("color")))]);
         }
         let stop = |n: &Node| {
             let l = n.list()?;
@@ -81,14 +70,14 @@ impl Background {
             p.entity.params.get("stops").and_then(|n| n.list()).unwrap_or(&[]).iter().filter_map(stop).collect();
         let up = p.vector("up");
         let up = Vec3::new(up[0] as f32, up[1] as f32, up[2] as f32).normalize_or(Vec3::Y);
-        Background::of(up, stops)
+        GradientBackground::of(up, stops)
     }
 
     fn of(up: Vec3, stops: Vec<(f32, Spectrum)>) -> Self {
         // Outside the stops the first and the last go on.
         let known = |s: &&(f32, Spectrum)| s.0 > -1.0 && s.0 < 1.0;
         let mut knots: Vec<(f64, f64)> = stops.iter().filter(known).map(|s| (f64::from(s.0), s.1.sum())).collect();
-        let mut background = Background { up, stops, pieces: Vec::new() };
+        let mut background = GradientBackground { up, stops, pieces: Vec::new() };
         knots.insert(0, (-1.0, background.at(&Lanes::RGB, -1.0).sum()));
         knots.push((1.0, background.at(&Lanes::RGB, 1.0_f32.next_down()).sum()));
         let mut sum = 0.0;
@@ -105,13 +94,8 @@ impl Background {
         self.stops.iter().all(|s| s.1.is_black())
     }
 
-    /// The power that it sends into a sphere of this radius, all lanes together, W.
-    pub fn power(&self, radius: f64) -> f64 {
-        PI * radius * radius * TAU * self.total()
-    }
-
-    /// A direction from which light comes. `u` in the unit square.
-    pub fn sample(&self, lanes: &Lanes, u: (f32, f32)) -> Option<LightSample> {
+    /// A direction from which light comes, with its density per solid angle. `u` in the unit square.
+    pub fn sample(&self, u: (f32, f32)) -> Option<(DVec3, f64)> {
         // Find the piece, and the place in it where the integral of its linear density is reached.
         let target = f64::from(u.0) * self.total();
         let i = self.pieces.partition_point(|p| p.sum <= target).min(self.pieces.len() - 1);
@@ -128,14 +112,18 @@ impl Background {
         let (r, phi) = ((1.0 - sine * sine).max(0.0).sqrt(), TAU * f64::from(u.1));
         let direction = (up * sine + x * (r * cos(phi)) + y * (r * sin(phi))).normalize();
         let pdf = self.pdf(direction);
-        let light = self.radiance(lanes, direction.as_vec3()) * (1.0 / pdf);
-        (pdf > 0.0 && light.is_finite()).then_some(LightSample { direction, target: None, light, pdf })
+        (pdf > 0.0).then_some((direction, pdf))
     }
 
-    /// Density per solid angle with which [`Background::sample`] gives `direction` (unit).
-    pub fn pdf(&self, direction: DVec3) -> f32 {
+    /// Density per solid angle with which [`GradientBackground::sample`] gives `direction` (unit).
+    pub fn pdf(&self, direction: DVec3) -> f64 {
         let brightness = self.radiance(&Lanes::RGB, direction.as_vec3()).sum();
-        if brightness > 0.0 { (brightness / (TAU * self.total())) as f32 } else { 0.0 }
+        if brightness > 0.0 { brightness / self.total_radiance() } else { 0.0 }
+    }
+
+    /// The integral of radiance over all directions, all lanes together, W/m2.
+    pub fn total_radiance(&self) -> f64 {
+        TAU * self.total()
     }
 
     fn total(&self) -> f64 {
