@@ -4,13 +4,12 @@
 use super::backend::{Backend, Keys, Weights};
 use super::box_ray::BoxRay;
 use super::node::{Block, Node};
-use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
 use crate::prepared_ray::clamp;
 use crate::triangle::{self, HEIGHT_ERROR};
 use core::arch::x86_64::*;
 use core::mem::MaybeUninit;
-use kirkas_geometry::bounds::{FAR_PAD, pad_far};
+use kirkas_geometry::bounds::pad_far;
 use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 /// Code for CPUs with AVX2 and FMA.
@@ -21,18 +20,6 @@ impl Backend for Avx2 {
     unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys {
         // SAFETY: the caller promises AVX2 and FMA and a valid node.
         unsafe { boxes::<ANY>(node, ray, limit) }
-    }
-
-    #[inline(always)]
-    unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
-        // SAFETY: the caller promises AVX2 and FMA and a valid node.
-        unsafe { packet_boxes(node, packet, limit) }
-    }
-
-    #[inline(always)]
-    unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
-        // SAFETY: the caller promises AVX2 and FMA and a valid node.
-        unsafe { rays_in_box(node, child, rays) }
     }
 
     #[inline(always)]
@@ -105,71 +92,6 @@ unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) ->
     };
     keys = _mm_or_si128(keys, row);
     from_register(keys)
-}
-
-/// When rays are within all three slabs. NaN, a ray within a face, is always the first operand, and so loses.
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-fn interval([x, y, z]: [(__m256, __m256); 3], t_min: __m256, limit: __m256) -> (__m256, __m256) {
-    let endless = _mm256_set1_ps(f32::INFINITY);
-    let near = _mm256_max_ps(_mm256_max_ps(x.0, t_min), _mm256_max_ps(y.0, _mm256_max_ps(z.0, t_min)));
-    let far = _mm256_min_ps(_mm256_min_ps(x.1, endless), _mm256_min_ps(y.1, _mm256_min_ps(z.1, endless)));
-    let after = _mm256_mul_ps(far, _mm256_set1_ps(FAR_PAD));
-    let before = _mm256_mul_ps(far, _mm256_set1_ps(2.0 - FAR_PAD));
-    (near, _mm256_min_ps(limit, _mm256_max_ps(after, before)))
-}
-
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
-    let planes = node.cast::<f32>();
-    let [o, i] = [&packet.origin, &packet.inverse];
-    // The least (or greatest) distance of a plane to any origin, along any direction: of four products.
-    let products = |k: usize, plane: __m256| {
-        let (a, b) = (_mm256_sub_ps(plane, _mm256_set1_ps(o[k].0)), _mm256_sub_ps(plane, _mm256_set1_ps(o[k].1)));
-        let (p, q) = (_mm256_set1_ps(i[k].0), _mm256_set1_ps(i[k].1));
-        [_mm256_mul_ps(a, p), _mm256_mul_ps(a, q), _mm256_mul_ps(b, p), _mm256_mul_ps(b, q)]
-    };
-    // SAFETY: the node begins with 6 rows of 8 planes.
-    let slab = |k: usize| unsafe {
-        let first = 16 * k + 8 * packet.is_negative[k] as usize;
-        let enter = _mm256_load_ps(planes.add(first));
-        let leave = _mm256_load_ps(planes.add(first ^ 8));
-        let endless = _mm256_set1_ps(f32::INFINITY);
-        let least = products(k, enter).into_iter().fold(endless, |m, p| _mm256_min_ps(p, m));
-        let most = products(k, leave)
-            .into_iter()
-            .fold(_mm256_sub_ps(_mm256_setzero_ps(), endless), |m, p| _mm256_max_ps(p, m));
-        (least, most)
-    };
-    let slabs = [slab(0), slab(1), slab(2)];
-    let (near, far) = interval(slabs, _mm256_set1_ps(packet.t_min), _mm256_set1_ps(limit));
-    let missed = _mm256_srli_epi32::<16>(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far)));
-    let near = _mm256_castps_si256(_mm256_max_ps(near, _mm256_setzero_ps()));
-    let keys = _mm256_or_si256(_mm256_srli_epi32::<16>(near), missed);
-    from_register(_mm_packus_epi32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys)))
-}
-
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
-    // SAFETY: the node is valid, and the index below 6 and 8.
-    let plane = |row: usize| unsafe { _mm256_set1_ps((&(*node).planes)[row][child & 7]) };
-    let enter = [0, 1, 2].map(|k| plane(2 * k + rays.is_negative[k] as usize));
-    let leave = [0, 1, 2].map(|k| plane(2 * k + 1 - rays.is_negative[k] as usize));
-    let mut inside = 0;
-    for eight in 0..PACKET / 8 {
-        // SAFETY: rows of PACKET numbers, aligned to 32 bytes.
-        let load = |row: &[f32; PACKET]| unsafe { _mm256_load_ps(row.as_ptr().add(8 * eight)) };
-        let slab = |k: usize| {
-            let (o, i) = (load(&rays.origin[k]), load(&rays.inverse[k]));
-            (_mm256_mul_ps(_mm256_sub_ps(enter[k], o), i), _mm256_mul_ps(_mm256_sub_ps(leave[k], o), i))
-        };
-        let (near, far) = interval([slab(0), slab(1), slab(2)], load(&rays.t_min), load(&rays.limit));
-        let bits = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far)) as u32;
-        inside |= u64::from(bits) << (8 * eight);
-    }
-    inside
 }
 
 #[inline]

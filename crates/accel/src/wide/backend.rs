@@ -2,11 +2,9 @@
 
 use super::box_ray::BoxRay;
 use super::node::{Block, Node, WIDTH};
-use super::packet::{Frustum, PACKET, PacketRays};
 use crate::prepared_ray::PreparedRay;
 use crate::triangle;
 use core::mem::MaybeUninit;
-use kirkas_geometry::bounds::pad_far;
 
 /// Eight 16-bit keys, the least of which comes next; [`NO_KEY`] for what is not to be visited.
 #[derive(Clone, Copy)]
@@ -47,18 +45,6 @@ pub(super) trait Backend {
     /// # Safety
     /// The CPU has what the backend needs; `node` is valid.
     unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) -> Keys;
-
-    /// The same for a whole packet: keys of the children that some of its rays may enter before `limit`.
-    ///
-    /// # Safety
-    /// As for [`Backend::boxes`].
-    unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys;
-
-    /// The box test of one child by each ray of a packet, 8 at a time: a bit for each ray that enters it before its limit.
-    ///
-    /// # Safety
-    /// As for [`Backend::boxes`].
-    unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64;
 
     /// The edge test of all triangles ([`triangle::intersect`]): a bit for each of which the edges do not rule a hit out, and
     /// what weighs their corners.
@@ -119,50 +105,6 @@ impl Backend for Portable {
             }
         }
         keys
-    }
-
-    #[inline(always)]
-    unsafe fn packet_boxes(node: *const Node, packet: &Frustum, limit: f32) -> Keys {
-        // SAFETY: the caller promises that the node is valid.
-        let node = unsafe { &*node };
-        let mut keys = Keys::NONE;
-        for c in 0..WIDTH {
-            let (mut near, mut far) = (packet.t_min, f32::INFINITY);
-            for k in 0..3 {
-                let first = 2 * k + packet.is_negative[k] as usize;
-                let (e, _) = packet.distances(k, node.planes[first][c]);
-                let (_, l) = packet.distances(k, node.planes[first ^ 1][c]);
-                near = if e > near { e } else { near };
-                far = if l < far { l } else { far };
-            }
-            let far = pad_far(far);
-            let far = if limit < far { limit } else { far };
-            if near <= far {
-                keys.0[c] = key(near);
-            }
-        }
-        keys
-    }
-
-    #[inline(always)]
-    unsafe fn rays_in_box(node: *const Node, child: usize, rays: &PacketRays) -> u64 {
-        // SAFETY: the caller promises that the node is valid.
-        let node = unsafe { &*node };
-        let mut inside = 0;
-        for r in 0..PACKET {
-            let (mut near, mut far) = (rays.t_min[r], f32::INFINITY);
-            for k in 0..3 {
-                let first = 2 * k + rays.is_negative[k] as usize;
-                let e = (node.planes[first][child & 7] - rays.origin[k][r]) * rays.inverse[k][r];
-                let l = (node.planes[first ^ 1][child & 7] - rays.origin[k][r]) * rays.inverse[k][r];
-                near = if e > near { e } else { near };
-                far = if l < far { l } else { far };
-            }
-            let far = pad_far(far);
-            let far = if rays.limit[r] < far { rays.limit[r] } else { far };
-            inside |= u64::from(near <= far) << r;
-        }
-        inside
     }
 
     #[inline(always)]

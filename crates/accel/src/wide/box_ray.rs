@@ -24,11 +24,11 @@ pub(super) struct BoxRay {
 }
 
 /// The roundings of both tests: 2 and the 21 of the padding in `Bounds3::intersect`, 4 here; and some more.
-const SLACK: f32 = 32.0 * UNIT_ROUNDOFF;
+pub(super) const SLACK: f32 = 32.0 * UNIT_ROUNDOFF;
 /// How far it takes a ray that does not move along an axis to cross what boxes and origin span there.
 const FAR: f32 = 0.25 * f32::MAX;
 /// Distances beyond this say nothing, since they might overflow.
-const SOUND: f32 = 0.5 * f32::MAX;
+pub(super) const SOUND: f32 = 0.5 * f32::MAX;
 
 impl BoxRay {
     /// For boxes of which no coordinate is larger than `reach`. Written where it is to stay.

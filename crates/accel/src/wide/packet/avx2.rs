@@ -1,0 +1,391 @@
+//! The arithmetic of packets in AVX2: eight children, or eight rays, at a time. The triangle test is operation for operation that
+//! of [`triangle`](crate::triangle); the box tests have slack and may differ.
+
+use super::super::avx2::Avx2;
+use super::super::backend::Keys;
+use super::super::node::{Block, Node};
+use super::backend::{Crossings, PacketBackend, prepared};
+use super::found::Found;
+use super::rays::{Frustum, Rays, Row};
+use crate::triangle::{self, HEIGHT_ERROR};
+use core::arch::x86_64::*;
+use kirkas_geometry::bounds::FAR_PAD;
+
+impl PacketBackend for Avx2 {
+    #[inline(always)]
+    unsafe fn packet_boxes(node: *const Node, frustum: &Frustum, limit: f32) -> Keys {
+        // SAFETY: the caller promises AVX2 and FMA and a valid node.
+        unsafe { packet_boxes(node, frustum, limit) }
+    }
+
+    #[inline(always)]
+    unsafe fn rays_in_box(node: *const Node, child: usize, rays: &Rays, limit: &Row, among: u64) -> u64 {
+        // SAFETY: the caller promises AVX2 and FMA and a valid node.
+        unsafe { rays_in_box(node, child, rays, limit, among) }
+    }
+
+    #[inline(always)]
+    unsafe fn cross_block(
+        block: *const Block,
+        count: usize,
+        rays: &Rays,
+        among: u64,
+        visit: impl FnMut(usize, usize, u32, &Crossings),
+    ) {
+        // SAFETY: the caller promises AVX2 and FMA and a valid block.
+        unsafe {
+            if rays.has_one_origin {
+                cross_block::<true>(block, count, rays, among, visit);
+            } else {
+                cross_block::<false>(block, count, rays, among, visit);
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn keep(found: &mut Found, eight: usize, bits: u32, crossings: &Crossings, number: u32) -> bool {
+        // SAFETY: the caller promises AVX2 and FMA.
+        unsafe { keep(found, eight, bits, crossings, number) }
+    }
+}
+
+/// The numbers of eight rays.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn load(row: &Row, eight: usize) -> __m256 {
+    // SAFETY: rows have 8 times 8 numbers, aligned to 32 bytes within the packet.
+    unsafe { _mm256_load_ps(row.as_ptr().add(8 * (eight & 7))) }
+}
+
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn packet_boxes(node: *const Node, f: &Frustum, limit: f32) -> Keys {
+    let planes = node.cast::<f32>();
+    let at = |plane: __m256, inverse: f32, offset: f32| {
+        _mm256_fmadd_ps(plane, _mm256_set1_ps(inverse), _mm256_set1_ps(offset))
+    };
+    // SAFETY: the node begins with 6 rows of 8 planes.
+    let slab = |k: usize| unsafe {
+        let first = 8 * f.enter_row[k];
+        let (enter, leave) = (_mm256_load_ps(planes.add(first)), _mm256_load_ps(planes.add(first ^ 8)));
+        let [i, j] = f.inverse[k];
+        (
+            _mm256_min_ps(at(enter, i, f.enter[k][0]), at(enter, j, f.enter[k][1])),
+            _mm256_max_ps(at(leave, i, f.leave[k][0]), at(leave, j, f.leave[k][1])),
+        )
+    };
+    let (x, y, z) = (slab(0), slab(1), slab(2));
+    let near = _mm256_max_ps(_mm256_max_ps(x.0, _mm256_set1_ps(f.t_min)), _mm256_max_ps(y.0, z.0));
+    let far = _mm256_min_ps(_mm256_min_ps(x.1, _mm256_set1_ps(limit)), _mm256_min_ps(y.1, z.1));
+    let missed = _mm256_srli_epi32::<16>(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far)));
+    let near = _mm256_castps_si256(_mm256_max_ps(near, _mm256_setzero_ps()));
+    let keys = _mm256_or_si256(_mm256_srli_epi32::<16>(near), missed);
+    let keys = _mm_packus_epi32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys));
+    let mut packed = Keys::NONE;
+    // SAFETY: the node is valid; keys are 16 bytes, and both are aligned to 16.
+    unsafe {
+        let empty = _mm_load_si128((&raw const (*node).empty).cast());
+        _mm_store_si128(packed.0.as_mut_ptr().cast(), _mm_or_si128(keys, empty));
+    }
+    packed
+}
+
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn rays_in_box(node: *const Node, child: usize, rays: &Rays, limit: &Row, among: u64) -> u64 {
+    let rows = rays.frustum.enter_row;
+    // SAFETY: the node is valid, and the index below 6 and 8.
+    let plane = |row: usize| unsafe { _mm256_set1_ps(*node.cast::<f32>().add(8 * row + (child & 7))) };
+    let (enter, leave) = (rows.map(plane), rows.map(|row| plane(row ^ 1)));
+    let mut inside = 0;
+    let mut left = among;
+    while left != 0 {
+        let shift = left.trailing_zeros() & 56;
+        left &= !(0xff << shift);
+        let eight = shift as usize / 8;
+        let slab = |k: usize| {
+            let i = load(&rays.inverse[k], eight);
+            (
+                _mm256_fmadd_ps(enter[k], i, load(&rays.enter[k], eight)),
+                _mm256_fmadd_ps(leave[k], i, load(&rays.leave[k], eight)),
+            )
+        };
+        let (x, y, z) = (slab(0), slab(1), slab(2));
+        let near = _mm256_max_ps(_mm256_max_ps(x.0, load(&rays.t_min, eight)), _mm256_max_ps(y.0, z.0));
+        let far = _mm256_min_ps(_mm256_min_ps(x.1, load(limit, eight)), _mm256_min_ps(y.1, z.1));
+        let bits = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far)) as u32;
+        inside |= u64::from(bits) << shift;
+    }
+    inside & among
+}
+
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn cross_block<const ONE_ORIGIN: bool>(
+    block: *const Block,
+    count: usize,
+    rays: &Rays,
+    among: u64,
+    mut visit: impl FnMut(usize, usize, u32, &Crossings),
+) {
+    let corners = block.cast::<f32>();
+    // The corners along the rays' axes; if the rays start at one point, as seen from there.
+    let mut seen = [[_mm256_setzero_ps(); 3]; 3];
+    for (c, corner) in seen.iter_mut().enumerate() {
+        for (k, row) in corner.iter_mut().enumerate() {
+            let axis = rays.axes[k];
+            // SAFETY: the block begins with 3 rows of 8 numbers for each corner.
+            *row = unsafe { _mm256_load_ps(corners.add(24 * c + 8 * (axis & 3))) };
+            if ONE_ORIGIN {
+                *row = _mm256_sub_ps(*row, _mm256_set1_ps(rays.origin[axis][0]));
+            }
+        }
+    }
+    let seen = (&raw const seen).cast::<f32>();
+    for lane in 0..count {
+        // SAFETY: 9 rows of 8 numbers.
+        let number = |c: usize, k: usize| unsafe { _mm256_broadcast_ss(&*seen.add(24 * c + 8 * k + lane)) };
+        let triangle = [0, 1, 2].map(|c| [0, 1, 2].map(|k| number(c, k)));
+        let mut plane = None;
+        let mut left = among;
+        while left != 0 {
+            let shift = left.trailing_zeros() & 56;
+            let among = (left >> shift) as u32 & 0xff;
+            left &= !(0xff << shift);
+            let eight = shift as usize / 8;
+            let (passing, weights) = edges::<ONE_ORIGIN>(&triangle, rays, eight);
+            let passing = passing & among;
+            if passing == 0 {
+                continue;
+            }
+            // SAFETY: the block is valid.
+            let plane = plane.get_or_insert_with(|| unsafe { Plane::new::<ONE_ORIGIN>(block, lane, rays) });
+            let mut crossings = Crossings::NONE;
+            let (bits, odd) = plane.cross::<ONE_ORIGIN>(rays, eight, passing, weights, &mut crossings);
+            let bits = if odd == 0 {
+                bits
+            } else {
+                // SAFETY: the block is valid.
+                bits & !odd | decide(unsafe { &*block }, lane, rays, eight, odd, &mut crossings)
+            };
+            if bits != 0 {
+                visit(lane, eight, bits, &crossings);
+            }
+        }
+    }
+}
+
+/// The edge test of eight rays, and the weights of the corners.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn edges<const ONE_ORIGIN: bool>(triangle: &[[__m256; 3]; 3], rays: &Rays, eight: usize) -> (u32, [__m256; 3]) {
+    let (sx, sy) = (load(&rays.shear[0], eight), load(&rays.shear[1], eight));
+    let sheared = |corner: &[__m256; 3]| {
+        let from = |k: usize| {
+            if ONE_ORIGIN { corner[k] } else { _mm256_sub_ps(corner[k], load(&rays.origin[rays.axes[k]], eight)) }
+        };
+        let z = from(2);
+        (_mm256_sub_ps(from(0), _mm256_mul_ps(sx, z)), _mm256_sub_ps(from(1), _mm256_mul_ps(sy, z)))
+    };
+    let [a, b, c] = [sheared(&triangle[0]), sheared(&triangle[1]), sheared(&triangle[2])];
+    let edge =
+        |p: (__m256, __m256), q: (__m256, __m256)| _mm256_sub_ps(_mm256_mul_ps(p.0, q.1), _mm256_mul_ps(p.1, q.0));
+    let w = [edge(c, b), edge(a, c), edge(b, a)];
+    // NaN is ignored in all but the last place, and there rules nothing out.
+    let lowest = _mm256_min_ps(w[2], _mm256_min_ps(w[1], w[0]));
+    let highest = _mm256_max_ps(w[2], _mm256_max_ps(w[1], w[0]));
+    let zero = _mm256_setzero_ps();
+    let negative = _mm256_cmp_ps::<_CMP_LT_OQ>(lowest, zero);
+    let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(highest, zero);
+    (!(_mm256_movemask_ps(_mm256_and_ps(negative, positive)) as u32) & 0xff, w)
+}
+
+/// What the eights share of the work on one triangle.
+struct Plane {
+    /// The first corner; if the rays start at one point, only `height` tells of it.
+    corner: [f64; 3],
+    normal: [f64; 3],
+    /// Above the point where all rays start; NaN where that is on the plane, as far as f64 can tell.
+    height: f64,
+    /// The sums of the edges' coordinates, without their signs.
+    sums: [f64; 2],
+    /// The bounds along each axis; if the rays start at one point, as seen from there.
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+#[inline(always)]
+fn sum(v: [f64; 3]) -> f64 {
+    v[0].abs() + v[1].abs() + v[2].abs()
+}
+
+impl Plane {
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    unsafe fn new<const ONE_ORIGIN: bool>(block: *const Block, lane: usize, rays: &Rays) -> Self {
+        // SAFETY: the caller promises that the block is valid.
+        let corners = unsafe { (*block).triangle(lane) };
+        let [p, q, r] = corners.map(|c| c.map(f64::from));
+        let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let (a, b) = (minus(q, p), minus(r, p));
+        let normal = [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]];
+        let sums = [sum(a), sum(b)];
+        let bounds = triangle::bounds(&corners);
+        let (mut low, mut high) = (bounds.min.to_array(), bounds.max.to_array());
+        let mut height = 0.0;
+        if ONE_ORIGIN {
+            let o = [0, 1, 2].map(|k: usize| rays.origin[k][0]);
+            let t = minus(p, o.map(f64::from));
+            height = normal[0] * t[0] + normal[1] * t[1] + normal[2] * t[2];
+            if height.abs() <= HEIGHT_ERROR * sum(t) * sums[0] * sums[1] {
+                height = f64::NAN;
+            }
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k] - o[k], high[k] - o[k]);
+            }
+        }
+        Plane { corner: p, normal, height, sums, low, high }
+    }
+
+    /// Where the rays that pass the edges cross: a bit for each that does, and for each of which the weights over- or underflow.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn cross<const ONE_ORIGIN: bool>(
+        &self,
+        rays: &Rays,
+        eight: usize,
+        passing: u32,
+        [w0, w1, w2]: [__m256; 3],
+        crossings: &mut Crossings,
+    ) -> (u32, u32) {
+        let four = |row: &Row, half: usize| {
+            // SAFETY: rows have 8 times 8 numbers.
+            _mm256_cvtps_pd(unsafe { _mm_load_ps(row.as_ptr().add(8 * (eight & 7) + 4 * half)) })
+        };
+        let n = self.normal.map(|n| _mm256_set1_pd(n));
+        let dot = |v: [__m256d; 3]| {
+            let sum = _mm256_add_pd(_mm256_mul_pd(n[0], v[0]), _mm256_mul_pd(n[1], v[1]));
+            _mm256_add_pd(sum, _mm256_mul_pd(n[2], v[2]))
+        };
+        // The plane, in f64. Rays that start on it do not meet it.
+        let half = |h: usize| {
+            let speed = dot([0, 1, 2].map(|k: usize| four(&rays.direction[k], h)));
+            let mut off_plane = -1;
+            let height = if ONE_ORIGIN {
+                _mm256_set1_pd(self.height)
+            } else {
+                let to =
+                    [0, 1, 2].map(|k: usize| _mm256_sub_pd(_mm256_set1_pd(self.corner[k]), four(&rays.origin[k], h)));
+                let size = |v: __m256d| _mm256_andnot_pd(_mm256_set1_pd(-0.0), v);
+                let height = dot(to);
+                let sum = _mm256_add_pd(_mm256_add_pd(size(to[0]), size(to[1])), size(to[2]));
+                let error = _mm256_mul_pd(_mm256_set1_pd(HEIGHT_ERROR), sum);
+                let error = _mm256_mul_pd(error, _mm256_set1_pd(self.sums[0]));
+                let error = _mm256_mul_pd(error, _mm256_set1_pd(self.sums[1]));
+                off_plane = !_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(size(height), error));
+                height
+            };
+            let t = _mm256_div_pd(height, speed);
+            let after = _mm256_cmp_pd::<_CMP_GT_OQ>(t, four(&rays.t_min, h));
+            let before = _mm256_cmp_pd::<_CMP_LT_OQ>(t, four(&rays.t_max, h));
+            (_mm256_cvtpd_ps(t), (_mm256_movemask_pd(_mm256_and_pd(after, before)) & off_plane & 15) as u32)
+        };
+        let ((t0, bits0), (t1, bits1)) = (half(0), half(1));
+        let bits = passing & (bits0 | bits1 << 4);
+        if bits == 0 {
+            return (0, 0);
+        }
+        let t = _mm256_set_m128(t1, t0);
+
+        // The bounds. NaN, a ray within a face, is always the first operand, and so says nothing.
+        let (t_min, t_max) = (load(&rays.t_min, eight), load(&rays.t_max, eight));
+        let (mut near, mut far) = (t_min, _mm256_set1_ps(f32::INFINITY));
+        for k in 0..3 {
+            let inverse = load(&rays.inverse[k], eight);
+            let at = |plane: f32| {
+                let plane = _mm256_set1_ps(plane);
+                let from = if ONE_ORIGIN { plane } else { _mm256_sub_ps(plane, load(&rays.origin[k], eight)) };
+                _mm256_mul_ps(from, inverse)
+            };
+            let (enter, leave) =
+                if rays.is_negative[k] != 0 { (self.high[k], self.low[k]) } else { (self.low[k], self.high[k]) };
+            near = _mm256_max_ps(at(enter), near);
+            far = _mm256_min_ps(at(leave), far);
+        }
+        let (after, before) = (_mm256_set1_ps(FAR_PAD), _mm256_set1_ps(2.0 - FAR_PAD));
+        let far = _mm256_max_ps(_mm256_mul_ps(far, after), _mm256_mul_ps(far, before));
+        let far = _mm256_min_ps(t_max, far);
+        let t = _mm256_min_ps(far, _mm256_max_ps(near, t));
+        let inside = _mm256_and_ps(
+            _mm256_cmp_ps::<_CMP_LE_OQ>(near, far),
+            _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(t, t_min), _mm256_cmp_ps::<_CMP_LT_OQ>(t, t_max)),
+        );
+        let bits = bits & _mm256_movemask_ps(inside) as u32;
+
+        // The weights.
+        let total = _mm256_add_ps(_mm256_add_ps(w0, w1), w2);
+        let size = _mm256_andnot_ps(_mm256_set1_ps(-0.0), total);
+        let is_normal = _mm256_and_ps(
+            _mm256_cmp_ps::<_CMP_GE_OQ>(size, _mm256_set1_ps(f32::MIN_POSITIVE)),
+            _mm256_cmp_ps::<_CMP_LT_OQ>(size, _mm256_set1_ps(f32::INFINITY)),
+        );
+        // SAFETY: 8 numbers each, aligned to 32 bytes.
+        unsafe {
+            _mm256_store_ps(crossings.t.as_mut_ptr(), t);
+            _mm256_store_ps(crossings.u.as_mut_ptr(), _mm256_div_ps(w1, total));
+            _mm256_store_ps(crossings.v.as_mut_ptr(), _mm256_div_ps(w2, total));
+        }
+        (bits, bits & !_mm256_movemask_ps(is_normal) as u32)
+    }
+}
+
+/// The crossings of the rays for which f32 does not suffice.
+#[cold]
+fn decide(block: &Block, lane: usize, rays: &Rays, eight: usize, odd: u32, crossings: &mut Crossings) -> u32 {
+    let mut bits = 0;
+    for l in (0..8).filter(|l| odd >> l & 1 != 0) {
+        let Some(ray) = prepared(rays, 8 * eight + l) else { continue };
+        if let Some((t, u, v)) = triangle::intersect(&block.triangle(lane), &ray) {
+            (crossings.t[l], crossings.u[l], crossings.v[l]) = (t, u, v);
+            bits |= 1 << l;
+        }
+    }
+    bits
+}
+
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn keep(found: &mut Found, eight: usize, bits: u32, crossings: &Crossings, number: u32) -> bool {
+    // SAFETY: 8 numbers each, aligned to 32 bytes.
+    let [t, u, v] = [&crossings.t, &crossings.u, &crossings.v].map(|row| unsafe { _mm256_load_ps(row.as_ptr()) });
+    let at = 8 * (eight & 7);
+    let best = load(&found.t, eight);
+    // SAFETY: rows have 8 times 8 numbers.
+    let rank = unsafe { _mm256_load_si256(found.rank.as_ptr().add(at).cast()) };
+    let number = _mm256_set1_epi32(number as i32);
+    let own = _mm256_add_epi32(number, _mm256_set1_epi32(1));
+    let is_first = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_min_epu32(own, rank), own));
+    let is_level = _mm256_cmp_ps::<_CMP_EQ_OQ>(t, best);
+    let wins = _mm256_or_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(t, best), _mm256_and_ps(is_level, is_first));
+    let each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    let asked = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits as i32), each), each);
+    let wins = _mm256_and_ps(wins, _mm256_castsi256_ps(asked));
+    if _mm256_movemask_ps(wins) == 0 {
+        return false;
+    }
+    let t = _mm256_blendv_ps(best, t, wins);
+    let limit =
+        _mm256_max_ps(_mm256_mul_ps(t, _mm256_set1_ps(found.pads[0])), _mm256_mul_ps(t, _mm256_set1_ps(found.pads[1])));
+    let blend = |row: &Row, new: __m256| _mm256_blendv_ps(load(row, eight), new, wins);
+    let (u, v) = (blend(&found.u, u), blend(&found.v, v));
+    let rank = _mm256_blendv_ps(_mm256_castsi256_ps(rank), _mm256_castsi256_ps(own), wins);
+    // SAFETY: rows have 8 times 8 numbers, aligned to 32 bytes within the packet.
+    unsafe {
+        _mm256_store_ps(found.t.as_mut_ptr().add(at), t);
+        _mm256_store_ps(found.limit.as_mut_ptr().add(at), limit);
+        _mm256_store_ps(found.u.as_mut_ptr().add(at), u);
+        _mm256_store_ps(found.v.as_mut_ptr().add(at), v);
+        _mm256_store_ps(found.rank.as_mut_ptr().add(at).cast(), rank);
+    }
+    true
+}
