@@ -152,7 +152,7 @@ impl Accel {
         };
         let batch = Batch { rays, query, level: self.world_level() };
         let enter: Enter<false> = &|ray, search, index| self.search_instance(index, ray, search);
-        tree.search_packets(&batch, enter, counters, |i, hit| hits[i] = hit);
+        tree.search_packets(&batch, enter, counters, hits);
     }
 
     /// Whether each ray hits anything, as [`Accel::any_hit`] tells. The slices must be of one length.

@@ -5,6 +5,7 @@ use crate::Vec3;
 /// Points `origin + t * direction` with `t_min < t < t_max`. The direction need not be unit; `t` is in units
 /// of its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Where it starts, in scene units.
     pub origin: Vec3,

@@ -120,3 +120,125 @@ fn camera_rays_go_down_the_tree_together() {
         assert!(4 * together.nodes_visited < alone.nodes_visited, "{together:?} {alone:?}");
     }
 }
+
+/// Packets of all cameras, in which each ray has an interval, a mask and a time of its own. Some rays can hit nothing.
+fn motley(r: &mut Random, corners: &[Vec3]) -> Vec<Ray> {
+    let mut rays = views(r, corners).concat();
+    for ray in &mut rays {
+        let far = (ray.origin.length() + 2.0) / ray.direction.length();
+        (ray.mask, ray.time) = (1 << r.below(3) | 8, r.unit());
+        (ray.t_min, ray.t_max) = (far * 0.5 * r.unit(), far * (0.3 + r.unit()));
+        match r.below(400) {
+            0 => ray.t_min = f32::NAN,
+            1 => ray.t_max = f32::NAN,
+            2 => (ray.t_min, ray.t_max) = (f32::NEG_INFINITY, f32::NEG_INFINITY),
+            3 => (ray.t_min, ray.t_max) = (f32::NEG_INFINITY, f32::INFINITY),
+            4 => (ray.t_min, ray.t_max) = (1.0, 1.0),
+            5 => ray.mask = 0,
+            _ => {}
+        }
+    }
+    rays
+}
+
+#[test]
+fn each_ray_of_a_packet_keeps_its_own_terms() {
+    let (mut hits, mut seen, mut left_out) = (0, 0, 0);
+    for seed in 0..8 {
+        let r = &mut Random::new(900 + seed);
+        let (mut scene, corners) = agreement::scene_of_everything(r, [9, 40, 200][seed as usize % 3]);
+        // What moves would send the rays elsewhere.
+        scene.world.retain(|g| !matches!(g.shape, Shape::MovingTriangles { .. }));
+        let twice =
+            scene.world.iter().filter(|g| matches!(g.shape, Shape::Triangles { .. })).cloned().collect::<Vec<_>>();
+        scene.world.extend(twice);
+        for g in &mut scene.world {
+            (g.mask, g.opaque) = ([1, 2, 4, 6, 9, 12, u32::MAX][r.below(7) as usize], r.below(2) == 0);
+        }
+        let rays = motley(r, &corners);
+        let brute = build(AccelKind::BruteForce, &scene);
+        let answer = |query: Query| -> Vec<Option<Hit>> {
+            let c = &mut Counters::default();
+            rays.iter().enumerate().map(|(i, ray)| brute.closest_hit(ray, query, i, c)).collect()
+        };
+        let first = answer(Query::ALL);
+        let excluded: Vec<_> = first.iter().map(|hit| hit.filter(|_| r.below(2) == 0).map(|hit| hit.id())).collect();
+        left_out += excluded.iter().flatten().count();
+        let queries = [Query::ALL, Query::filtered(&Coin), Query::filtered(&Coin).excluding(&excluded[..2000])];
+        for (kind, query) in [AccelKind::Bvh8, AccelKind::Bvh8Best, AccelKind::Bvh8Compact].into_iter().zip(queries) {
+            let expected = answer(query);
+            for accel in [build(kind, &scene), build(kind, &scene).portable()] {
+                assert_same_batches(&accel, &rays, query, &expected);
+            }
+            (hits, seen) = (hits + expected.iter().flatten().count(), seen + rays.len());
+        }
+    }
+    assert!(hits > seen / 20 && hits < seen && left_out > 1000, "{hits} of {seen}, {left_out}");
+}
+
+#[test]
+fn odd_rays_among_others_find_what_they_find_alone() {
+    let r = &mut Random::new(31);
+    let (positions, indices) = crate::meshes::ball(3);
+    let scene = world(vec![Shape::Triangles { positions: Arc::new(positions), indices: Arc::new(indices) }]);
+    let brute = build(AccelKind::BruteForce, &scene);
+    let odd = [
+        Ray::new(Vec3::new(0.1, 0.2, 5.0), -Vec3::Z),
+        Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::new(0.0, -0.0, -1e-40)),
+        Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::new(1e-42, 1e-42, -1.0)),
+        Ray::new(Vec3::ZERO, Vec3::ZERO),
+        Ray::new(Vec3::ZERO, Vec3::splat(1e30)),
+        Ray::new(Vec3::splat(-1e30), Vec3::ONE),
+        Ray::new(Vec3::splat(-3e38), Vec3::splat(3e38)),
+        Ray::new(Vec3::splat(f32::NAN), Vec3::ONE),
+        Ray::new(Vec3::splat(-2.0), Vec3::splat(f32::NAN)),
+        Ray::new(Vec3::splat(-2.0), Vec3::splat(f32::INFINITY)),
+        Ray::new(Vec3::splat(-2.0), Vec3::splat(1e-20)),
+    ];
+    let mut hits = 0;
+    for strange in odd {
+        for mut rays in views(r, &[Vec3::X, Vec3::Y, Vec3::splat(0.5)]) {
+            rays.truncate(64 + r.below(65) as usize);
+            let place = r.below(rays.len() as u32) as usize;
+            rays[place] = strange;
+            let expected: Vec<Option<Hit>> = rays.iter().map(|ray| closest(&brute, ray)).collect();
+            for accel in [build(AccelKind::Bvh8Best, &scene), build(AccelKind::Bvh8Best, &scene).portable()] {
+                assert_same_batches(&accel, &rays, Query::ALL, &expected);
+            }
+            hits += expected.iter().flatten().count();
+        }
+    }
+    assert!(hits > 2000, "{hits}");
+}
+
+/// Seen from far away or close by, sizes at which the products of the edge test over- and underflow among them.
+#[test]
+fn packets_see_small_and_large_worlds_alike() {
+    let mut hits = 0;
+    for (k, size) in [1e-25f32, 1e-15, 1e-6, 1.0, 1e6, 1e12, 3e18].into_iter().enumerate() {
+        let r = &mut Random::new(60 + k as u64);
+        let soup: Vec<_> = (0..400)
+            .map(|_| (r.cube() * size, r.cube() * size * 0.3, r.cube() * size * 0.3))
+            .map(|(p, a, b)| [p, p + a, p + b])
+            .collect();
+        let scene = world(vec![triangles(&soup)]);
+        let brute = build(AccelKind::BruteForce, &scene);
+        let accels = [
+            build(AccelKind::Bvh8, &scene),
+            build(AccelKind::Bvh8Best, &scene),
+            build(AccelKind::Bvh8, &scene).portable(),
+        ];
+        for (distance, width) in [(3.0, 0.5), (0.0, 1.0), (300.0, 0.004), (3e4, 4e-5)] {
+            let forward = r.cube().normalize();
+            let from = -forward * size * distance;
+            let slanted = orthographic(from, forward * size, size).into_iter();
+            let rays: Vec<Ray> = pinhole(from, forward, width).into_iter().chain(slanted).collect();
+            let expected: Vec<Option<Hit>> = rays.iter().map(|ray| closest(&brute, ray)).collect();
+            for accel in &accels {
+                assert_same_batches(accel, &rays, Query::ALL, &expected);
+            }
+            hits += expected.iter().flatten().count();
+        }
+    }
+    assert!(hits > 5000, "{hits}");
+}

@@ -4,14 +4,24 @@
 use super::super::avx2::Avx2;
 use super::super::backend::Keys;
 use super::super::node::{Block, Node};
+use super::PACKET;
 use super::backend::{Crossings, PacketBackend, prepared};
 use super::found::Found;
 use super::rays::{Frustum, Rays, Row};
 use crate::triangle::{self, HEIGHT_ERROR};
 use core::arch::x86_64::*;
+use core::mem::offset_of;
+use kirkas_geometry::Ray;
 use kirkas_geometry::bounds::FAR_PAD;
+use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 impl PacketBackend for Avx2 {
+    #[inline(always)]
+    unsafe fn load_rows(rows: &mut Rays, rays: &[Ray; PACKET]) {
+        // SAFETY: the caller promises AVX2 and FMA.
+        unsafe { load_rows(rows, rays) }
+    }
+
     #[inline(always)]
     unsafe fn packet_boxes(node: *const Node, frustum: &Frustum, limit: f32) -> Keys {
         // SAFETY: the caller promises AVX2 and FMA and a valid node.
@@ -57,6 +67,49 @@ fn load(row: &Row, eight: usize) -> __m256 {
     unsafe { _mm256_load_ps(row.as_ptr().add(8 * (eight & 7))) }
 }
 
+/// Origin, direction and interval are the first 8 numbers of a ray.
+const _: () = assert!(
+    offset_of!(Ray, origin) == 0
+        && offset_of!(Ray, direction) == 12
+        && offset_of!(Ray, t_min) == 24
+        && offset_of!(Ray, t_max) == 28
+);
+
+/// Eight rays' eight numbers at a time are turned from columns to rows.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn load_rows(rows: &mut Rays, rays: &[Ray; PACKET]) {
+    let ([ox, oy, oz], [dx, dy, dz]) = (&mut rows.origin, &mut rows.direction);
+    for (eight, rays) in rays.as_chunks::<8>().0.iter().enumerate() {
+        // SAFETY: rays begin with 8 numbers, of which these are the first or the last 4.
+        let four = |r: usize, half: usize| unsafe { _mm_loadu_ps((&raw const rays[r]).cast::<f32>().add(4 * half)) };
+        let both = |r: usize, half: usize| _mm256_set_m128(four(r + 4, half), four(r, half));
+        let turned = |half: usize| {
+            let [a, b, c, d] = [both(0, half), both(1, half), both(2, half), both(3, half)];
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let (ab2, cd2) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            [
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab, cd),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab, cd),
+                _mm256_shuffle_ps::<0b01_00_01_00>(ab2, cd2),
+                _mm256_shuffle_ps::<0b11_10_11_10>(ab2, cd2),
+            ]
+        };
+        store([ox, oy, oz, dx], eight, turned(0));
+        store([dy, dz, &mut rows.t_min, &mut rows.t_max], eight, turned(1));
+    }
+}
+
+/// Write the numbers of eight rays.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn store<const N: usize>(rows: [&mut Row; N], eight: usize, values: [__m256; N]) {
+    for (row, value) in rows.into_iter().zip(values) {
+        // SAFETY: rows have 8 times 8 numbers, aligned to 32 bytes within the packet.
+        unsafe { _mm256_store_ps(row.as_mut_ptr().add(8 * (eight & 7)), value) };
+    }
+}
+
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 unsafe fn packet_boxes(node: *const Node, f: &Frustum, limit: f32) -> Keys {
@@ -96,7 +149,8 @@ unsafe fn rays_in_box(node: *const Node, child: usize, rays: &Rays, limit: &Row,
     let rows = rays.frustum.enter_row;
     // SAFETY: the node is valid, and the index below 6 and 8.
     let plane = |row: usize| unsafe { _mm256_set1_ps(*node.cast::<f32>().add(8 * row + (child & 7))) };
-    let (enter, leave) = (rows.map(plane), rows.map(|row| plane(row ^ 1)));
+    let enter = [plane(rows[0]), plane(rows[1]), plane(rows[2])];
+    let leave = [plane(rows[0] ^ 1), plane(rows[1] ^ 1), plane(rows[2] ^ 1)];
     let mut inside = 0;
     let mut left = among;
     while left != 0 {
@@ -141,11 +195,18 @@ unsafe fn cross_block<const ONE_ORIGIN: bool>(
             }
         }
     }
+    let mut lanes = (1u32 << count) - 1;
+    if ONE_ORIGIN {
+        lanes &= !unreached(&seen, rays);
+    }
     let seen = (&raw const seen).cast::<f32>();
-    for lane in 0..count {
+    while lanes != 0 {
+        let lane = lanes.trailing_zeros() as usize;
+        lanes &= lanes - 1;
         // SAFETY: 9 rows of 8 numbers.
         let number = |c: usize, k: usize| unsafe { _mm256_broadcast_ss(&*seen.add(24 * c + 8 * k + lane)) };
-        let triangle = [0, 1, 2].map(|c| [0, 1, 2].map(|k| number(c, k)));
+        let corner = |c: usize| [number(c, 0), number(c, 1), number(c, 2)];
+        let triangle = [corner(0), corner(1), corner(2)];
         let mut plane = None;
         let mut left = among;
         while left != 0 {
@@ -173,6 +234,57 @@ unsafe fn cross_block<const ONE_ORIGIN: bool>(
             }
         }
     }
+}
+
+/// More than what products lose that are too small for f32.
+const UNDERFLOW: f32 = 1e-36;
+
+/// The triangles that no ray of the packet reaches, eight at once: those of which the edge test fails for every shear in the packet's.
+///
+/// A weight is linear in the shear (in real numbers): what it is in the middle, and how fast it changes from there, give its
+/// extremes. A triangle is out of reach if one weight has one sign throughout, and the sum of all three the other.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn unreached(seen: &[[__m256; 3]; 3], rays: &Rays) -> u32 {
+    let [(sx, hx), (sy, hy)] = rays.shears;
+    let (sx, sy, hx, hy) = (_mm256_set1_ps(sx), _mm256_set1_ps(sy), _mm256_set1_ps(hx), _mm256_set1_ps(hy));
+    let size = |v: __m256| _mm256_andnot_ps(_mm256_set1_ps(-0.0), v);
+    let (mut far, mut wide) = (_mm256_setzero_ps(), _mm256_setzero_ps());
+    let mut shear = |[x, y, z]: [__m256; 3]| {
+        let p = (_mm256_fnmadd_ps(sx, z, x), _mm256_fnmadd_ps(sy, z, y), z);
+        far = _mm256_max_ps(far, _mm256_add_ps(size(z), _mm256_max_ps(size(x), size(y))));
+        wide = _mm256_max_ps(wide, _mm256_max_ps(size(p.0), size(p.1)));
+        p
+    };
+    let [a, b, c] = [shear(seen[0]), shear(seen[1]), shear(seen[2])];
+    // All roundings, here and in the edge tests of three edges: less than 128 of the largest product of a coordinate seen along a ray
+    // (of `wide`) and what it was computed from (of `far`). Infinite before a product can be.
+    let wide = _mm256_fmadd_ps(_mm256_max_ps(hx, hy), far, wide);
+    let largest = _mm256_mul_ps(_mm256_mul_ps(_mm256_set1_ps(4.0), wide), far);
+    let slack = _mm256_fmadd_ps(largest, _mm256_set1_ps(32.0 * UNIT_ROUNDOFF), _mm256_set1_ps(UNDERFLOW));
+    type Weight = (__m256, __m256, __m256);
+    let edge = |p: Weight, q: Weight| {
+        (
+            _mm256_fmsub_ps(p.0, q.1, _mm256_mul_ps(p.1, q.0)),
+            _mm256_fmsub_ps(p.2, q.1, _mm256_mul_ps(p.1, q.2)),
+            _mm256_fmsub_ps(p.0, q.2, _mm256_mul_ps(p.2, q.0)),
+        )
+    };
+    let extremes = |(middle, dx, dy): Weight| {
+        let reach = _mm256_fmadd_ps(size(dx), hx, _mm256_fmadd_ps(size(dy), hy, slack));
+        (_mm256_sub_ps(middle, reach), _mm256_add_ps(middle, reach))
+    };
+    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+    let add = |p: __m256, q: __m256, r: __m256| _mm256_add_ps(_mm256_add_ps(p, q), r);
+    let total = extremes((add(u.0, v.0, w.0), add(u.1, v.1, w.1), add(u.2, v.2, w.2)));
+    let (u, v, w) = (extremes(u), extremes(v), extremes(w));
+    let zero = _mm256_setzero_ps();
+    let lowest = _mm256_min_ps(u.1, _mm256_min_ps(v.1, w.1));
+    let highest = _mm256_max_ps(u.0, _mm256_max_ps(v.0, w.0));
+    let (below, above) = (_mm256_cmp_ps::<_CMP_LT_OQ>, _mm256_cmp_ps::<_CMP_GT_OQ>);
+    let front = _mm256_and_ps(below(lowest, zero), above(total.0, zero));
+    let back = _mm256_and_ps(above(highest, zero), below(total.1, zero));
+    _mm256_movemask_ps(_mm256_or_ps(front, back)) as u32
 }
 
 /// The edge test of eight rays, and the weights of the corners.
@@ -262,20 +374,22 @@ impl Plane {
             // SAFETY: rows have 8 times 8 numbers.
             _mm256_cvtps_pd(unsafe { _mm_load_ps(row.as_ptr().add(8 * (eight & 7) + 4 * half)) })
         };
-        let n = self.normal.map(|n| _mm256_set1_pd(n));
+        let [x, y, z] = self.normal;
+        let n = [_mm256_set1_pd(x), _mm256_set1_pd(y), _mm256_set1_pd(z)];
         let dot = |v: [__m256d; 3]| {
             let sum = _mm256_add_pd(_mm256_mul_pd(n[0], v[0]), _mm256_mul_pd(n[1], v[1]));
             _mm256_add_pd(sum, _mm256_mul_pd(n[2], v[2]))
         };
         // The plane, in f64. Rays that start on it do not meet it.
         let half = |h: usize| {
-            let speed = dot([0, 1, 2].map(|k: usize| four(&rays.direction[k], h)));
+            let [x, y, z] = &rays.direction;
+            let speed = dot([four(x, h), four(y, h), four(z, h)]);
             let mut off_plane = -1;
             let height = if ONE_ORIGIN {
                 _mm256_set1_pd(self.height)
             } else {
-                let to =
-                    [0, 1, 2].map(|k: usize| _mm256_sub_pd(_mm256_set1_pd(self.corner[k]), four(&rays.origin[k], h)));
+                let to = |k: usize| _mm256_sub_pd(_mm256_set1_pd(self.corner[k]), four(&rays.origin[k], h));
+                let to = [to(0), to(1), to(2)];
                 let size = |v: __m256d| _mm256_andnot_pd(_mm256_set1_pd(-0.0), v);
                 let height = dot(to);
                 let sum = _mm256_add_pd(_mm256_add_pd(size(to[0]), size(to[1])), size(to[2]));
@@ -357,7 +471,8 @@ fn decide(block: &Block, lane: usize, rays: &Rays, eight: usize, odd: u32, cross
 #[target_feature(enable = "avx2,fma")]
 unsafe fn keep(found: &mut Found, eight: usize, bits: u32, crossings: &Crossings, number: u32) -> bool {
     // SAFETY: 8 numbers each, aligned to 32 bytes.
-    let [t, u, v] = [&crossings.t, &crossings.u, &crossings.v].map(|row| unsafe { _mm256_load_ps(row.as_ptr()) });
+    let eight_of = |row: &[f32; 8]| unsafe { _mm256_load_ps(row.as_ptr()) };
+    let (t, u, v) = (eight_of(&crossings.t), eight_of(&crossings.u), eight_of(&crossings.v));
     let at = 8 * (eight & 7);
     let best = load(&found.t, eight);
     // SAFETY: rows have 8 times 8 numbers.
@@ -378,14 +493,9 @@ unsafe fn keep(found: &mut Found, eight: usize, bits: u32, crossings: &Crossings
         _mm256_max_ps(_mm256_mul_ps(t, _mm256_set1_ps(found.pads[0])), _mm256_mul_ps(t, _mm256_set1_ps(found.pads[1])));
     let blend = |row: &Row, new: __m256| _mm256_blendv_ps(load(row, eight), new, wins);
     let (u, v) = (blend(&found.u, u), blend(&found.v, v));
+    store([&mut found.t, &mut found.u, &mut found.v, &mut found.limit], eight, [t, u, v, limit]);
     let rank = _mm256_blendv_ps(_mm256_castsi256_ps(rank), _mm256_castsi256_ps(own), wins);
-    // SAFETY: rows have 8 times 8 numbers, aligned to 32 bytes within the packet.
-    unsafe {
-        _mm256_store_ps(found.t.as_mut_ptr().add(at), t);
-        _mm256_store_ps(found.limit.as_mut_ptr().add(at), limit);
-        _mm256_store_ps(found.u.as_mut_ptr().add(at), u);
-        _mm256_store_ps(found.v.as_mut_ptr().add(at), v);
-        _mm256_store_ps(found.rank.as_mut_ptr().add(at).cast(), rank);
-    }
+    // SAFETY: as in `store`.
+    unsafe { _mm256_store_ps(found.rank.as_mut_ptr().add(at).cast(), rank) };
     true
 }

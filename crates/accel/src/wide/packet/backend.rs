@@ -7,6 +7,7 @@ use super::found::Found;
 use super::rays::{Frustum, Rays, Row};
 use crate::prepared_ray::PreparedRay;
 use crate::triangle;
+use kirkas_geometry::{Ray, Vec3};
 
 /// Where eight rays cross a triangle.
 #[derive(Clone, Copy)]
@@ -23,6 +24,12 @@ impl Crossings {
 
 /// The arithmetic of packets. Eight rays that stand together are named by their place among the eights, 0 to 7.
 pub(super) trait PacketBackend: Backend {
+    /// Write the rays' origins, directions and intervals to rows.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs.
+    unsafe fn load_rows(rows: &mut Rays, rays: &[Ray; PACKET]);
+
     /// Keys of the children that some ray of the packet may enter before `limit`.
     ///
     /// # Safety
@@ -57,13 +64,23 @@ pub(super) trait PacketBackend: Backend {
 
 /// The ray that a place in the packet holds.
 pub(super) fn prepared(rays: &Rays, r: usize) -> Option<PreparedRay> {
-    let vector = |rows: &[Row; 3]| kirkas_geometry::Vec3::from([rows[0][r], rows[1][r], rows[2][r]]);
-    let mut ray = kirkas_geometry::Ray::new(vector(&rays.origin), vector(&rays.direction));
+    let vector = |rows: &[Row; 3]| Vec3::from([rows[0][r], rows[1][r], rows[2][r]]);
+    let mut ray = Ray::new(vector(&rays.origin), vector(&rays.direction));
     (ray.t_min, ray.t_max) = (rays.t_min[r], rays.t_max[r]);
     PreparedRay::new(&ray)
 }
 
 impl PacketBackend for Portable {
+    #[inline(always)]
+    unsafe fn load_rows(rows: &mut Rays, rays: &[Ray; PACKET]) {
+        for (r, ray) in rays.iter().enumerate() {
+            for k in 0..3 {
+                (rows.origin[k][r], rows.direction[k][r]) = (ray.origin[k], ray.direction[k]);
+            }
+            (rows.t_min[r], rows.t_max[r]) = (ray.t_min, ray.t_max);
+        }
+    }
+
     #[inline(always)]
     unsafe fn packet_boxes(node: *const Node, f: &Frustum, limit: f32) -> Keys {
         // SAFETY: the caller promises that the node is valid.

@@ -22,6 +22,7 @@ use crate::search::{Enter, Search};
 use backend::PacketBackend;
 use core::mem::MaybeUninit;
 use found::Found;
+use kirkas_geometry::Ray;
 use rays::Rays;
 
 /// Rays in a packet.
@@ -55,6 +56,7 @@ struct Packet<'a> {
     /// Where in the batch they begin.
     first: usize,
     counters: Counters,
+    ahead: Ahead,
 }
 
 impl Tree {
@@ -65,18 +67,18 @@ impl Tree {
         batch: &Batch,
         enter: Enter<false>,
         counters: &mut Counters,
-        done: impl FnMut(usize, Option<Hit>),
+        hits: &mut [Option<Hit>],
     ) {
         if !self.root.is_node() || self.is_moving {
-            return self.search_batch(batch, enter, counters, done);
+            return self.search_batch(batch, enter, counters, |i, hit| hits[i] = hit);
         }
         #[cfg(target_arch = "x86_64")]
         if self.has_avx2 {
             // SAFETY: `has_avx2` is only set where it was detected.
-            return unsafe { pack_avx2(self, batch, enter, counters, done) };
+            return unsafe { pack_avx2(self, batch, enter, counters, hits) };
         }
         // SAFETY: portable code needs nothing.
-        unsafe { pack::<Portable>(self, batch, enter, counters, done) }
+        unsafe { pack::<Portable>(self, batch, enter, counters, hits) }
     }
 }
 
@@ -87,10 +89,10 @@ unsafe fn pack_avx2(
     batch: &Batch,
     enter: Enter<false>,
     counters: &mut Counters,
-    done: impl FnMut(usize, Option<Hit>),
+    hits: &mut [Option<Hit>],
 ) {
     // SAFETY: AVX2 and FMA are enabled here.
-    unsafe { pack::<super::avx2::Avx2>(tree, batch, enter, counters, done) }
+    unsafe { pack::<super::avx2::Avx2>(tree, batch, enter, counters, hits) }
 }
 
 /// # Safety
@@ -101,7 +103,7 @@ unsafe fn pack<B: PacketBackend>(
     batch: &Batch,
     enter: Enter<false>,
     counters: &mut Counters,
-    mut done: impl FnMut(usize, Option<Hit>),
+    hits: &mut [Option<Hit>],
 ) {
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
     let mut packet = Packet {
@@ -112,23 +114,58 @@ unsafe fn pack<B: PacketBackend>(
         batch,
         first: 0,
         counters: Counters::default(),
+        ahead: Ahead::NOTHING,
     };
     for first in (0..batch.rays.len()).step_by(PACKET) {
         let end = batch.rays.len().min(first + PACKET);
-        if !packet.rays.load(&batch.rays[first..end], tree.reach) {
-            tree.search_slice(batch, first..end, enter, counters, &mut done);
+        // SAFETY: the caller promises the CPU.
+        if !unsafe { packet.rays.load::<B>(&batch.rays[first..end], tree.reach) } {
+            tree.search_slice(batch, first..end, enter, counters, |i, hit| hits[i] = hit);
             continue;
         }
         packet.found.clear(&packet.rays, tree.is_split);
         (packet.prepared, packet.first) = (0, first);
+        packet.ahead = Ahead::of(batch.rays.get(end..).unwrap_or_default(), hits.get(end..).unwrap_or_default());
         // SAFETY: the caller promises the CPU, and the root is a node of a tree where nothing moves.
         unsafe { packet.walk::<B>(&ground) };
-        for r in 0..end - first {
-            done(first + r, packet.found.hit(r, &tree.numbers));
+        for (r, hit) in hits[first..end].iter_mut().enumerate() {
+            *hit = packet.found.hit(r, &tree.numbers);
         }
         packet.counters.rays += (end - first) as u64;
     }
     *counters += packet.counters;
+}
+
+/// What the next packet will touch, to be loaded little by little while this one is under way.
+struct Ahead {
+    next: [*const i8; 2],
+    lines: usize,
+}
+
+impl Ahead {
+    const NOTHING: Ahead = Ahead { next: [core::ptr::null(); 2], lines: 0 };
+
+    fn of(rays: &[Ray], hits: &[Option<Hit>]) -> Self {
+        let bytes = size_of_val(rays).min(size_of_val(hits)).min(PACKET * size_of::<Ray>());
+        Ahead { next: [rays.as_ptr().cast(), hits.as_ptr().cast()], lines: bytes / 64 }
+    }
+
+    /// Start to load a little more.
+    #[inline(always)]
+    fn load(&mut self) {
+        for _ in 0..self.lines.min(3) {
+            self.lines -= 1;
+            for next in &mut self.next {
+                #[cfg(target_arch = "x86_64")]
+                // SAFETY: prefetching has no effect on memory.
+                unsafe {
+                    use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+                    _mm_prefetch::<_MM_HINT_T0>(*next);
+                }
+                *next = next.wrapping_add(64);
+            }
+        }
+    }
 }
 
 impl Packet<'_> {
@@ -148,6 +185,7 @@ impl Packet<'_> {
         loop {
             // Put the children that rays enter away, the farthest first.
             self.counters.nodes_visited += 1;
+            self.ahead.load();
             // SAFETY: the place is that of a node of this tree.
             let node: *const Node = unsafe { arena::get(ground.lines, place.line()) };
             // SAFETY: the node is valid, and the caller promises the CPU.
@@ -191,6 +229,7 @@ impl Packet<'_> {
                     place = next.place;
                     break;
                 }
+                self.ahead.load();
                 // SAFETY: what is no node is a leaf of this tree, and the caller promises the CPU.
                 if unsafe { self.test_leaf::<B>(next.place, inside, ground) } {
                     limit = self.farthest();

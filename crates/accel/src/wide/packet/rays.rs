@@ -2,7 +2,9 @@
 
 use super::super::box_ray::{SLACK, SOUND};
 use super::PACKET;
+use super::backend::PacketBackend;
 use kirkas_geometry::Ray;
+use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 /// A number of each ray.
 pub(super) type Row = [f32; PACKET];
@@ -20,6 +22,8 @@ pub(super) struct Rays {
     pub shear: [Row; 2],
     pub t_min: Row,
     pub t_max: Row,
+    /// The middle of all shears along each axis, and how far they are from it at most.
+    pub shears: [(f32, f32); 2],
     /// The axes in cyclic order, the one along which they run fastest last; of the first ray, unless `has_one_axis`.
     pub axes: [usize; 3],
     /// All run fastest along the same axis.
@@ -78,6 +82,7 @@ impl Rays {
         shear: [[0.0; PACKET]; 2],
         t_min: [0.0; PACKET],
         t_max: [0.0; PACKET],
+        shears: [(0.0, 0.0); 2],
         axes: [0; 3],
         has_one_axis: false,
         has_one_origin: false,
@@ -94,25 +99,31 @@ impl Rays {
     };
 
     /// Take these rays, 1 to 64, for boxes of which no coordinate is larger than `reach`; false when they cannot go together.
+    ///
+    /// # Safety
+    /// The CPU has what `B` needs.
     #[inline(always)]
-    pub fn load(&mut self, rays: &[Ray], reach: f32) -> bool {
-        self.mask = u32::MAX;
-        self.active = 0;
-        for (r, ray) in rays.iter().enumerate() {
-            let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-            for k in 0..3 {
-                (self.origin[k][r], self.direction[k][r]) = (o[k], d[k]);
-            }
-            (self.t_min[r], self.t_max[r]) = (ray.t_min, ray.t_max);
-            self.active |= u64::from(ray.t_min < ray.t_max) << r;
-            self.mask &= ray.mask;
+    pub unsafe fn load<B: PacketBackend>(&mut self, rays: &[Ray], reach: f32) -> bool {
+        if let Ok(all) = rays.try_into() {
+            // SAFETY: the caller promises the CPU.
+            unsafe { B::load_rows(self, all) };
+            self.active = u64::MAX;
+        } else {
+            // SAFETY: as above.
+            unsafe { B::load_rows(self, &filled(rays)) };
+            self.active = (1 << rays.len()) - 1;
         }
-        // Where no ray is, one stands in that is never asked.
-        for r in rays.len()..PACKET {
-            for k in 0..3 {
-                (self.origin[k][r], self.direction[k][r]) = (self.origin[k][0], self.direction[k][0]);
+        let mut masks = [u32::MAX; LANES];
+        let (eights, rest) = rays.as_chunks::<LANES>();
+        for eight in eights {
+            for (mask, ray) in masks.iter_mut().zip(eight) {
+                *mask &= ray.mask;
             }
-            (self.t_min[r], self.t_max[r]) = (f32::INFINITY, f32::NEG_INFINITY);
+        }
+        self.mask = masks.iter().chain(rest.iter().map(|ray| &ray.mask)).fold(u32::MAX, |all, mask| all & mask);
+        for r in 0..PACKET {
+            let can_hit = self.t_min[r] < self.t_max[r];
+            self.active &= !(u64::from(!can_hit) << r);
         }
         self.has_one_origin = true;
         let mut slack = [0.0; 3];
@@ -171,12 +182,25 @@ impl Rays {
         self.axes = [(w + 1) % 3, (w + 2) % 3, w];
         if self.has_one_axis {
             for k in 0..2 {
-                for r in 0..PACKET {
-                    self.shear[k][r] = self.direction[self.axes[k]][r] / self.direction[w][r];
+                let (along, last) = (&self.direction[self.axes[k]], &self.direction[w]);
+                for ((s, d), w) in self.shear[k].iter_mut().zip(along).zip(last) {
+                    *s = d / w;
                 }
+                let (low, high) = extremes(&self.shear[k]);
+                let middle = 0.5 * (low + high);
+                // A little more than half of the span, for the roundings of these two lines.
+                self.shears[k] = (middle, 0.5 * (high - low) + 4.0 * UNIT_ROUNDOFF * most(low.abs(), high.abs()));
             }
         }
     }
+}
+
+/// Rays of which the last stand in where there are none, and are never asked.
+#[cold]
+fn filled(rays: &[Ray]) -> [Ray; PACKET] {
+    let mut all = [rays[0]; PACKET];
+    all[..rays.len()].copy_from_slice(rays);
+    all
 }
 
 #[inline(always)]
