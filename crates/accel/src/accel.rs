@@ -12,6 +12,7 @@ use crate::wide::Batch;
 use crate::{AccelError, AccelKind, Executor, check, record};
 use core::cell::RefCell;
 use core::cmp::Ordering;
+use core::mem::MaybeUninit;
 use kirkas_geometry::{Bounds3, Ray};
 
 /// A structure over a scene. Immutable, and shared by as many threads as the caller likes.
@@ -212,11 +213,17 @@ impl Accel {
         Ok(())
     }
 
+    #[inline(always)]
     fn search<const ANY: bool>(&self, ray: &Ray, search: &mut Search<ANY>) {
-        let Some(ray) = PreparedRay::new(ray) else { return };
+        let mut place = MaybeUninit::uninit();
+        if !PreparedRay::prepare(&mut place, ray, (ray.t_min, ray.t_max)) {
+            return;
+        }
+        // SAFETY: prepared.
+        let ray = unsafe { place.assume_init_ref() };
         self.world
             .structure
-            .search(self.world_level(), &ray, search, &|ray, search, index| self.search_instance(index, ray, search));
+            .search(self.world_level(), ray, search, &|ray, search, index| self.search_instance(index, ray, search));
     }
 
     pub(crate) fn world_level(&self) -> Level<'_> {

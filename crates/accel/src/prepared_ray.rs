@@ -1,8 +1,7 @@
 //! A ray with what every test against it needs, computed once.
 
 use core::mem::MaybeUninit;
-use kirkas_geometry::bounds::safe_inverse;
-use kirkas_geometry::{Ray, Vec3};
+use kirkas_geometry::{Ray, Vec3, Vec4};
 
 /// A ray ready to be tested. Rays inside an instance carry two intervals: the world ray's own, and that of the instance's
 /// bounds, into which `t` is clamped.
@@ -14,8 +13,8 @@ pub struct PreparedRay {
     pub(crate) t_min: f32,
     /// Hits lie before this.
     pub(crate) t_max: f32,
-    /// One over the direction.
-    pub(crate) inverse: [f32; 3],
+    /// One over the direction; the last lane is idle.
+    pub(crate) inverse: [f32; 4],
     /// 1 where the direction is negative, so that the high plane of a box is met first.
     pub(crate) is_negative: [u32; 3],
     /// The axes, the one along which the ray runs fastest last (each below 3).
@@ -44,19 +43,19 @@ impl PreparedRay {
     /// [`PreparedRay::clipped`] where it is to stay; false when nothing was written. Copying what was just written would wait for it.
     #[inline(always)]
     pub(crate) fn prepare(place: &mut MaybeUninit<Self>, clipped: &Ray, t: (f32, f32)) -> bool {
-        let (o, d) = (clipped.origin.to_array(), clipped.direction.to_array());
-        let [x, y, z] = d.map(f32::abs);
-        let usable = clipped.origin.is_finite() && clipped.direction.is_finite() && x + y + z != 0.0 && t.0 < t.1;
-        if !usable {
+        let (o, d) = (clipped.origin.extend(0.0), clipped.direction.extend(0.0));
+        let (size, endless) = (d.abs(), Vec4::INFINITY);
+        let is_finite = (o.abs().cmplt(endless) & size.cmplt(endless)).all();
+        if !(is_finite & d.cmpne(Vec4::ZERO).any() & (t.0 < t.1)) {
             return false;
         }
         // Without branches, since nothing is known of the next ray: y or z, and then x if it beats that.
-        let last = if y > z { 1 } else { 2 };
-        let last = if x > y && x > z { 0 } else { last };
+        let last = if size.y > size.z { 1 } else { 2 };
+        let last = if (size.x > size.y) & (size.x > size.z) { 0 } else { last };
         let axes: [u32; 3] = AXES[last];
         let [u, v, w] = axes.map(|k| k as usize & 3);
-        let (o4, d4) = ([o[0], o[1], o[2], 0.0], [d[0], d[1], d[2], 0.0]);
-        let inverse = safe_inverse(clipped.direction).to_array();
+        let inverse = (Vec4::ONE / d).to_array();
+        let (o, d) = (o.to_array(), d.to_array());
         let p = place.as_mut_ptr();
         // SAFETY: every field is written.
         unsafe {
@@ -64,10 +63,10 @@ impl PreparedRay {
             (&raw mut (*p).t_min).write(t.0);
             (&raw mut (*p).t_max).write(t.1);
             (&raw mut (*p).inverse).write(inverse);
-            (&raw mut (*p).is_negative).write(inverse.map(|i| i.to_bits() >> 31));
+            (&raw mut (*p).is_negative).write([inverse[0], inverse[1], inverse[2]].map(|i| i.to_bits() >> 31));
             (&raw mut (*p).axes).write(axes);
-            (&raw mut (*p).sheared_origin).write([o4[u], o4[v], o4[w]]);
-            (&raw mut (*p).shear).write([d4[u] / d4[w], d4[v] / d4[w]]);
+            (&raw mut (*p).sheared_origin).write([o[u], o[v], o[w]]);
+            (&raw mut (*p).shear).write([d[u] / d[w], d[v] / d[w]]);
         }
         true
     }
@@ -75,7 +74,7 @@ impl PreparedRay {
     /// One over the direction.
     #[inline]
     pub(crate) fn inverse(&self) -> Vec3 {
-        Vec3::from_array(self.inverse)
+        Vec3::new(self.inverse[0], self.inverse[1], self.inverse[2])
     }
 
     /// A crossing, clamped into what `Bounds3::intersect` gave for its bounds, if it may be a hit.

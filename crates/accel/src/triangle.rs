@@ -177,7 +177,7 @@ fn dot(a: Lanes<f64>, b: Lanes<f64>) -> f64 {
 #[inline(always)]
 fn within((low, high): &(Lanes<f32>, Lanes<f32>), ray: &PreparedRay) -> Option<(f32, f32)> {
     let origin = to_lanes(ray.clipped.origin.to_array());
-    let inverse = to_lanes(ray.inverse);
+    let inverse = ray.inverse;
     let at = |plane: &Lanes<f32>| each(each(*plane, origin, |p, o| p - o), inverse, |x, i| x * i);
     let (to_low, to_high) = (at(low), at(high));
     let (mut near, mut far) = (ray.clipped.t_min, f32::INFINITY);

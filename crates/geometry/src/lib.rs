@@ -19,6 +19,6 @@ pub mod warp;
 
 pub use bounds::Bounds3;
 pub use frame::Frame;
-pub use glam::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3};
+pub use glam::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3, Vec4};
 pub use motion::AnimatedTransform;
 pub use ray::Ray;

@@ -16,7 +16,7 @@ pub(crate) struct NodeRay {
 
 impl NodeRay {
     pub fn new(ray: &PreparedRay) -> Self {
-        let inverse = ray.inverse;
+        let inverse = ray.inverse().to_array();
         NodeRay {
             origin: ray.clipped.origin.to_array(),
             inverse,

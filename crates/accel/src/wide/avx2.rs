@@ -2,7 +2,7 @@
 //! tests with fused operations, within the slack that they have.
 
 use super::backend::{Backend, Keys, Weights};
-use super::box_ray::BoxRay;
+use super::box_ray::{BoxRay, ROW};
 use super::node::{Block, Node};
 use crate::prepared_ray::PreparedRay;
 use crate::prepared_ray::clamp;
@@ -64,19 +64,19 @@ unsafe fn boxes<const ANY: bool>(node: *const Node, ray: &BoxRay, limit: f32) ->
     // SAFETY: the node begins with 6 rows of 8 planes.
     let slab = |k: usize| unsafe {
         let inverse = _mm256_set1_ps(ray.inverse[k]);
-        let first = 8 * ray.enter_row[k] as usize;
-        let enter = _mm256_load_ps(planes.add(first));
-        let leave = _mm256_load_ps(planes.add(first ^ 8));
+        let first = ray.enter_row[k] as usize;
+        let enter = _mm256_load_ps(planes.byte_add(first));
+        let leave = _mm256_load_ps(planes.byte_add(first ^ ROW as usize));
         (
             _mm256_fmadd_ps(enter, inverse, _mm256_set1_ps(ray.enter[k])),
             _mm256_fmadd_ps(leave, inverse, _mm256_set1_ps(ray.leave[k])),
         )
     };
     let (x, y, z) = (slab(0), slab(1), slab(2));
-    // NaN is always the first operand, and so says nothing.
+    // Only an empty slot may give NaN.
     let (t_min, limit) = (_mm256_set1_ps(ray.t_min), _mm256_set1_ps(limit));
-    let near = _mm256_max_ps(_mm256_max_ps(x.0, t_min), _mm256_max_ps(y.0, _mm256_max_ps(z.0, t_min)));
-    let far = _mm256_min_ps(_mm256_min_ps(x.1, limit), _mm256_min_ps(y.1, _mm256_min_ps(z.1, limit)));
+    let near = _mm256_max_ps(_mm256_max_ps(x.0, y.0), _mm256_max_ps(z.0, t_min));
+    let far = _mm256_min_ps(_mm256_min_ps(x.1, y.1), _mm256_min_ps(z.1, limit));
     let missed = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(near, far));
     let missed = _mm256_srli_epi32::<16>(missed);
     let keys = if ANY {
@@ -173,7 +173,8 @@ unsafe fn distance(block: *const Block, lane: usize, ray: &PreparedRay) -> Optio
     let (low, high) = (_mm_sub_ps(low, more(low)), _mm_add_ps(high, more(high)));
 
     // When the ray is within them.
-    let inverse = vector(ray.inverse.as_ptr());
+    // SAFETY: 16 bytes; the last lane is not looked at.
+    let inverse = unsafe { _mm_loadu_ps(ray.inverse.as_ptr()) };
     let to_low = _mm_mul_ps(_mm_sub_ps(low, origin), inverse);
     let to_high = _mm_mul_ps(_mm_sub_ps(high, origin), inverse);
     let (enter, leave) = (_mm_blendv_ps(to_low, to_high, inverse), _mm_blendv_ps(to_high, to_low, inverse));

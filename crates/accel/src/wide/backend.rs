@@ -1,6 +1,6 @@
 //! The arithmetic of a step, once for any CPU. A twin for AVX2 is in `avx2`; both give the same bits.
 
-use super::box_ray::BoxRay;
+use super::box_ray::{BoxRay, ROW};
 use super::node::{Block, Node, WIDTH};
 use crate::prepared_ray::PreparedRay;
 use crate::triangle;
@@ -88,7 +88,7 @@ impl Backend for Portable {
         let mut near = [ray.t_min; WIDTH];
         let mut far = [f32::INFINITY; WIDTH];
         for k in 0..3 {
-            let first = ray.enter_row[k] as usize;
+            let first = (ray.enter_row[k] / ROW) as usize;
             let (enter, leave) = (&node.planes[first], &node.planes[first ^ 1]);
             for c in 0..WIDTH {
                 let e = enter[c] * ray.inverse[k] + ray.enter[k];

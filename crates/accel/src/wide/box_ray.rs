@@ -4,8 +4,10 @@
 //! little more: a plane's distance is one multiplication and one addition, `plane * inverse + offset`, with offsets that are lowered
 //! where a ray enters and raised where it leaves by more than all roundings of both tests together.
 
+use super::node::WIDTH;
 use crate::prepared_ray::PreparedRay;
 use core::mem::MaybeUninit;
+use kirkas_geometry::Vec4;
 use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 
 /// A ray as the box test sees it.
@@ -18,11 +20,13 @@ pub(super) struct BoxRay {
     pub enter: [f32; 4],
     /// Added to the distances of the planes through which it leaves.
     pub leave: [f32; 4],
-    /// The rows of a node's planes through which it enters.
+    /// Where in a node the planes lie through which it enters, in bytes.
     pub enter_row: [u32; 3],
     pub t_min: f32,
 }
 
+/// Bytes of a row of planes in a node.
+pub(super) const ROW: u32 = size_of::<[f32; WIDTH]>() as u32;
 /// The roundings of both tests: 2 and the 21 of the padding in `Bounds3::intersect`, 4 here; and some more.
 pub(super) const SLACK: f32 = 32.0 * UNIT_ROUNDOFF;
 /// How far it takes a ray that does not move along an axis to cross what boxes and origin span there.
@@ -34,18 +38,19 @@ impl BoxRay {
     /// For boxes of which no coordinate is larger than `reach`. Written where it is to stay.
     #[inline(always)]
     pub fn prepare(place: &mut MaybeUninit<Self>, ray: &PreparedRay, reach: f32) {
-        let o = ray.clipped.origin;
-        let (origin, i) = ([o.x, o.y, o.z, 0.0], ray.inverse);
-        let inverse = [i[0], i[1], i[2], 0.0];
-        let each = |f: &dyn Fn(usize) -> f32| [f(0), f(1), f(2), f(3)];
-        // Every box lies before this.
-        let farthest = each(&|k| (reach + origin[k].abs()) * inverse[k].abs());
-        let enter = each(&|k| -(origin[k] * inverse[k]) - SLACK * farthest[k]);
-        let leave = each(&|k| -(origin[k] * inverse[k]) + SLACK * farthest[k]);
-        let enter_row = [ray.is_negative[0], 2 + ray.is_negative[1], 4 + ray.is_negative[2]];
-        let b = place.write(BoxRay { inverse, enter, leave, enter_row, t_min: ray.clipped.t_min });
-        if !(farthest[0] < SOUND && farthest[1] < SOUND && farthest[2] < SOUND) {
-            b.mend(origin, reach);
+        let (origin, inverse) = (ray.clipped.origin.extend(0.0), Vec4::from_array(ray.inverse));
+        // Every box lies before this. The idle lane is that of no axis.
+        let farthest = (Vec4::splat(reach) + origin.abs()) * inverse.abs();
+        let (offset, slack) = (-(origin * inverse), SLACK * farthest);
+        let b = place.write(BoxRay {
+            inverse: ray.inverse,
+            enter: (offset - slack).to_array(),
+            leave: (offset + slack).to_array(),
+            enter_row: [0, 1, 2].map(|k| ROW * (2 * k as u32 + ray.is_negative[k])),
+            t_min: ray.clipped.t_min,
+        });
+        if farthest.cmplt(Vec4::splat(SOUND)).bitmask() & 0b111 != 0b111 {
+            b.mend(origin.to_array(), reach);
         }
     }
 
@@ -64,7 +69,7 @@ impl BoxRay {
                 continue;
             }
             if inverse.is_finite() || farthest >= 1e31 {
-                (self.enter[k], self.leave[k]) = (f32::NEG_INFINITY, f32::INFINITY);
+                (self.inverse[k], self.enter[k], self.leave[k]) = (0.0, f32::NEG_INFINITY, f32::INFINITY);
             } else {
                 // The ray stays where it is along this axis: what it is not within, by the slack, which it takes 1e32 to
                 // cross, lies too far away.

@@ -76,11 +76,10 @@ struct Slot<'a, const ANY: bool> {
     search: Search<'a, ANY>,
 }
 
-/// Slots, by where their rays are.
+/// Slots, by where their rays are: each as its distance in bytes from the first.
 struct Lists {
     nodes: [u32; IN_FLIGHT],
     leaves: [u32; IN_FLIGHT],
-    ended: [u32; IN_FLIGHT],
 }
 
 /// How many are in each of the [`Lists`].
@@ -88,20 +87,61 @@ struct Lists {
 struct Counts {
     nodes: usize,
     leaves: usize,
-    ended: usize,
 }
 
 impl Lists {
-    /// Put a slot where its ray's place says: written into all lists, counted in one, without a branch.
+    /// Put a slot where its ray's place says: written into both lists, counted in one, without a branch.
     #[inline(always)]
     fn sort(&mut self, place: Place, slot: u32, n: &mut Counts) {
-        let (is_node, is_end) = (usize::from(place.is_node()), usize::from(place.is_end()));
+        let is_node = usize::from(place.is_node());
         self.nodes[n.nodes & (IN_FLIGHT - 1)] = slot;
         self.leaves[n.leaves & (IN_FLIGHT - 1)] = slot;
-        self.ended[n.ended & (IN_FLIGHT - 1)] = slot;
         n.nodes += is_node;
-        n.ended += is_end;
-        n.leaves += 1 - is_node - is_end;
+        n.leaves += 1 - is_node;
+    }
+}
+
+/// The rays that wait, and who is told of each.
+struct Queue<'q, 'a, F> {
+    batch: &'q Batch<'a>,
+    waiting: Range<usize>,
+    counters: &'q mut Counters,
+    done: F,
+}
+
+impl<'a, F: FnMut(usize, Option<Hit>)> Queue<'_, 'a, F> {
+    /// Let the next ray start in a slot; false when none waits.
+    #[inline(always)]
+    fn launch<const ANY: bool>(&mut self, s: *mut Slot<'a, ANY>, ground: &Ground<ANY>) -> bool {
+        while let Some(index) = self.waiting.next() {
+            let ray = &self.batch.rays[index];
+            // SAFETY: a place for a ray, still to be written.
+            let prepared = unsafe { &mut *(&raw mut (*s).ray).cast::<MaybeUninit<PreparedRay>>() };
+            if !PreparedRay::prepare(prepared, ray, (ray.t_min, ray.t_max)) {
+                self.counters.rays += 1;
+                (self.done)(index, None);
+                continue;
+            }
+            // SAFETY: the ray was written, and the other parts of the slot are before any is read.
+            let slot = unsafe {
+                (&raw mut (*s).search).write(Search::new(ray, index, self.batch.query));
+                let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
+                Walker::start(walker, &(*s).ray, &mut (*s).search, ground);
+                &mut *s
+            };
+            if !slot.walker.place.is_end() {
+                return true;
+            }
+            self.finish(slot);
+        }
+        false
+    }
+
+    /// Tell what was found.
+    #[inline(always)]
+    fn finish<const ANY: bool>(&mut self, slot: &Slot<ANY>) {
+        *self.counters += slot.search.counters;
+        (self.done)(slot.search.ray_index, slot.search.best);
     }
 }
 
@@ -111,82 +151,61 @@ impl Lists {
 unsafe fn fly<'a, B: Backend, const ANY: bool>(
     tree: &Tree,
     batch: &Batch<'a>,
-    mut waiting: Range<usize>,
+    waiting: Range<usize>,
     enter: Enter<ANY>,
     counters: &mut Counters,
-    mut done: impl FnMut(usize, Option<Hit>),
+    done: impl FnMut(usize, Option<Hit>),
 ) {
     let ground = Ground { tree, lines: tree.lines.as_ptr(), level: batch.level, enter };
     let mut slots: [MaybeUninit<Slot<'a, ANY>>; IN_FLIGHT] = [const { MaybeUninit::uninit() }; IN_FLIGHT];
-    let mut lists = Lists { nodes: [0; IN_FLIGHT], leaves: [0; IN_FLIGHT], ended: [0; IN_FLIGHT] };
-    // At first no slot has a ray, which is as if all had ended.
-    let mut n = Counts { nodes: 0, leaves: 0, ended: IN_FLIGHT };
-    lists.ended = core::array::from_fn(|i| i as u32);
-    loop {
-        // Who is through makes room.
-        let ended = lists.ended;
-        let count = core::mem::take(&mut n.ended);
-        for &number in &ended[..count] {
-            let slot = &mut slots[number as usize];
-            for index in waiting.by_ref() {
-                let ray = &batch.rays[index];
-                let s = slot.as_mut_ptr();
-                // SAFETY: a place for a ray, still to be written.
-                let prepared = unsafe { &mut *(&raw mut (*s).ray).cast::<MaybeUninit<PreparedRay>>() };
-                if !PreparedRay::prepare(prepared, ray, (ray.t_min, ray.t_max)) {
-                    counters.rays += 1;
-                    done(index, None);
-                    continue;
-                }
-                // SAFETY: the ray was written, and the other parts of the slot are before any is read.
-                let slot = unsafe {
-                    (&raw mut (*s).search).write(Search::new(ray, index, batch.query));
-                    let walker = &mut *(&raw mut (*s).walker).cast::<MaybeUninit<Walker>>();
-                    Walker::start(walker, &(*s).ray, &mut (*s).search, &ground);
-                    &mut *s
-                };
-                if slot.walker.place.is_end() {
-                    *counters += slot.search.counters;
-                    done(index, slot.search.best);
-                    continue;
-                }
-                lists.sort(slot.walker.place, number, &mut n);
-                break;
-            }
+    let first = slots.as_mut_ptr().cast::<Slot<'a, ANY>>();
+    let mut queue = Queue { batch, waiting, counters, done };
+    let mut lists = Lists { nodes: [0; IN_FLIGHT], leaves: [0; IN_FLIGHT] };
+    let mut n = Counts { nodes: 0, leaves: 0 };
+    for number in 0..IN_FLIGHT {
+        let offset = number * size_of::<Slot<ANY>>();
+        // SAFETY: within the slots.
+        let slot = unsafe { first.byte_add(offset) };
+        if !queue.launch(slot, &ground) {
+            break;
         }
-        if n.nodes + n.leaves == 0 {
-            return;
-        }
-        // What stays in a list is written over what was already read.
+        // SAFETY: launched.
+        lists.sort(unsafe { (*slot).walker.place }, offset as u32, &mut n);
+    }
+    // What stays in a list is written over what was already read.
+    while n.nodes + n.leaves > 0 {
         if n.nodes >= n.leaves {
             let count = core::mem::take(&mut n.nodes);
-            counters.nodes_visited += count as u64;
+            queue.counters.nodes_visited += count as u64;
             for i in 0..count {
-                let number = lists.nodes[i];
-                // SAFETY: slots in the lists were filled.
-                let walker = unsafe { &mut slots.get_unchecked_mut(number as usize).assume_init_mut().walker };
+                let offset = lists.nodes[i];
+                // SAFETY: slots in the lists hold rays.
+                let walker = unsafe { &mut (*first.byte_add(offset as usize)).walker };
                 // SAFETY: this list holds rays at nodes; the caller promises the CPU.
                 unsafe { walker.step_node::<B, ANY>(&ground) };
                 prefetch(&ground, walker.place);
-                lists.sort(walker.place, number, &mut n);
+                lists.sort(walker.place, offset, &mut n);
             }
         } else {
             let count = core::mem::take(&mut n.leaves);
             for i in 0..count {
-                let number = lists.leaves[i];
-                // SAFETY: slots in the lists were filled.
-                let slot = unsafe { slots.get_unchecked_mut(number as usize).assume_init_mut() };
-                // SAFETY: this list holds rays at leaves and nodes of what moves; the caller promises the CPU.
-                unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
+                let offset = lists.leaves[i];
+                // SAFETY: slots in the lists hold rays.
+                let slot = unsafe { &mut *first.byte_add(offset as usize) };
+                if !slot.walker.place.is_end() {
+                    // SAFETY: this list holds rays at leaves, at nodes of what moves, and at the end; the caller promises the CPU.
+                    unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
+                }
+                // Who is through makes room.
+                if slot.walker.place.is_end() {
+                    queue.finish(slot);
+                    if !queue.launch(slot, &ground) {
+                        continue;
+                    }
+                }
                 prefetch(&ground, slot.walker.place);
-                lists.sort(slot.walker.place, number, &mut n);
+                lists.sort(slot.walker.place, offset, &mut n);
             }
-        }
-        for &number in &lists.ended[..n.ended] {
-            // SAFETY: slots in the lists were filled.
-            let search = unsafe { &slots[number as usize].assume_init_ref().search };
-            *counters += search.counters;
-            done(search.ray_index, search.best);
         }
     }
 }
