@@ -55,6 +55,12 @@ impl Backend for Avx2 {
         // SAFETY: the caller promises AVX2 and FMA.
         unsafe { without(keys, place) }
     }
+
+    #[inline(always)]
+    unsafe fn is_empty(keys: &Keys) -> bool {
+        // SAFETY: the caller promises AVX2 and FMA.
+        unsafe { is_empty(keys) }
+    }
 }
 
 #[inline]
@@ -224,6 +230,12 @@ unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
     };
     let rest = _mm_or_si128(to_register(keys), to_register(&ONE[place & 7]));
     (from_register(rest), _mm_test_all_ones(rest) != 0)
+}
+
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn is_empty(keys: &Keys) -> bool {
+    _mm_test_all_ones(to_register(keys)) != 0
 }
 
 #[inline]

@@ -75,6 +75,12 @@ pub(super) trait Backend {
     /// # Safety
     /// The CPU has what the backend needs.
     unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool);
+
+    /// True when nothing is to be visited.
+    ///
+    /// # Safety
+    /// The CPU has what the backend needs.
+    unsafe fn is_empty(keys: &Keys) -> bool;
 }
 
 /// Code for any CPU.
@@ -157,6 +163,12 @@ impl Backend for Portable {
     unsafe fn without(keys: &Keys, place: usize) -> (Keys, bool) {
         let mut rest = *keys;
         rest.0[place & (WIDTH - 1)] = NO_KEY;
-        (rest, rest.0.iter().all(|k| *k == NO_KEY))
+        // SAFETY: portable code needs nothing.
+        (rest, unsafe { Self::is_empty(&rest) })
+    }
+
+    #[inline(always)]
+    unsafe fn is_empty(keys: &Keys) -> bool {
+        keys.0.iter().all(|k| *k == NO_KEY)
     }
 }

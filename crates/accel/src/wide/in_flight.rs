@@ -182,7 +182,7 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
                 // SAFETY: slots in the lists hold rays.
                 let walker = unsafe { &mut (*first.byte_add(offset as usize)).walker };
                 // SAFETY: this list holds rays at nodes; the caller promises the CPU.
-                unsafe { walker.step_node::<B, ANY>(&ground) };
+                unsafe { walker.step_node_in_flight::<B, ANY>(&ground) };
                 prefetch(&ground, walker.place);
                 lists.sort(walker.place, offset, &mut n);
             }

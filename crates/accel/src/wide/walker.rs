@@ -4,7 +4,7 @@
 use super::arena::{self, Line};
 use super::backend::{Backend, Keys, NO_KEY, Weights, key};
 use super::box_ray::BoxRay;
-use super::node::{Block, List, MotionNode, Node, Place};
+use super::node::{Block, List, MotionNode, Node, Place, WIDTH};
 use super::{MAX_LEVELS, Tree};
 use crate::prepared_ray::PreparedRay;
 use crate::record::IS_INSTANCE;
@@ -18,8 +18,12 @@ use kirkas_geometry::bounds::pad_far;
 #[repr(C, align(32))]
 struct Entry {
     keys: Keys,
-    node: Place,
+    /// The node's.
+    children: *const [Place; WIDTH],
 }
+
+/// Where the guard leads: whoever takes it has nothing left to visit.
+static NOWHERE: [Place; WIDTH] = [Place::END; WIDTH];
 
 /// The nodes on the way down to where a ray is. Each visited node leaves at most one entry, so the tree's depth bounds it.
 #[repr(C)]
@@ -77,7 +81,7 @@ impl Walker {
             (&raw mut (*w).limit).write(0.0);
             (&raw mut (*w).limit_key).write(0);
             (&raw mut (*w).stack.len).write(1);
-            (&raw mut (*w).stack.entries[0]).write(MaybeUninit::new(Entry { keys: guard, node: Place::END }));
+            (&raw mut (*w).stack.entries[0]).write(MaybeUninit::new(Entry { keys: guard, children: &raw const NOWHERE }));
             &mut *w
         };
         if !ground.tree.unbounded.is_empty() {
@@ -118,7 +122,7 @@ impl Walker {
     /// # Safety
     /// As [`Walker::step_node`].
     #[inline(always)]
-    unsafe fn next<B: Backend>(&mut self, lines: *const Line) {
+    unsafe fn next<B: Backend>(&mut self) {
         // SAFETY: the guard at the bottom of the stack is never passed.
         unsafe {
             loop {
@@ -129,14 +133,9 @@ impl Walker {
                     continue;
                 }
                 let (rest, is_empty) = B::without(&entry.keys, place);
-                if self.stack.len == 1 {
-                    self.place = Place::END;
-                    return;
-                }
                 entry.keys = rest;
                 self.stack.len -= usize::from(is_empty);
-                let node: *const Node = arena::get(lines, entry.node.line());
-                self.place = *(*node).children.get_unchecked(place);
+                self.place = *(*entry.children).get_unchecked(place);
                 return;
             }
         }
@@ -173,14 +172,33 @@ impl Walker {
         unsafe {
             let (least, child) = B::least(&keys);
             if least == NO_KEY {
-                return self.next::<B>(lines);
+                return self.next::<B>();
             }
             // Written in any case, kept if there is something in it.
             let (keys, is_empty) = B::without(&keys, child);
-            *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(Entry { keys, node: self.place });
-            self.stack.len += usize::from(!is_empty);
             let node: *const Node = arena::get(lines, self.place.line());
-            self.place = *(*node).children.get_unchecked(child);
+            let children = &raw const (*node).children;
+            *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(Entry { keys, children });
+            self.stack.len += usize::from(!is_empty);
+            self.place = *(*children).get_unchecked(child);
+        }
+    }
+
+    /// [`Walker::step_node`] for one of many rays: what it finds goes through the stack in any case, so that nothing hangs on
+    /// whether it finds anything.
+    ///
+    /// # Safety
+    /// As [`Walker::step_node`].
+    #[inline(always)]
+    pub unsafe fn step_node_in_flight<B: Backend, const ANY: bool>(&mut self, ground: &Ground<ANY>) {
+        // SAFETY: the tree's places lead to what they say; the stack has room for a node on each level.
+        unsafe {
+            let node: *const Node = arena::get(ground.lines, self.place.line());
+            let keys = B::boxes::<ANY>(node, &self.lanes, self.limit);
+            let entry = Entry { keys, children: &raw const (*node).children };
+            *self.stack.entries.get_unchecked_mut(self.stack.len) = MaybeUninit::new(entry);
+            self.stack.len += usize::from(!B::is_empty(&keys));
+            self.next::<B>();
         }
     }
 
@@ -206,7 +224,7 @@ impl Walker {
             if search.is_done() {
                 self.place = Place::END;
             } else {
-                self.next::<B>(ground.lines);
+                self.next::<B>();
             }
         }
     }
