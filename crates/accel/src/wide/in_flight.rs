@@ -3,8 +3,9 @@
 //! load what its next step needs. A ray that is through makes room for the next one at once.
 
 use super::Tree;
-use super::backend::{Backend, Portable};
-use super::node::Place;
+use super::arena;
+use super::backend::{Backend, Portable, Weights};
+use super::node::{Block, Place};
 use super::walker::{Ground, Walker};
 use crate::hit::{Counters, Hit};
 use crate::prepared_ray::PreparedRay;
@@ -74,6 +75,9 @@ struct Slot<'a, const ANY: bool> {
     walker: Walker,
     ray: PreparedRay,
     search: Search<'a, ANY>,
+    /// Of the block where the ray is: the triangles whose edges it passes, and what weighs their corners.
+    passing: u32,
+    weights: MaybeUninit<Weights>,
 }
 
 /// Slots, by where their rays are: each as its distance in bytes from the first.
@@ -187,15 +191,43 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
                 lists.sort(walker.place, offset, &mut n);
             }
         } else {
+            // The edges of the triangles in each block,
             let count = core::mem::take(&mut n.leaves);
-            for i in 0..count {
-                let offset = lists.leaves[i];
+            let (mut passed, mut through) = ([0; IN_FLIGHT], [0; IN_FLIGHT]);
+            let (mut n_passed, mut n_through) = (0, 0);
+            for &offset in &lists.leaves[..count] {
                 // SAFETY: slots in the lists hold rays.
                 let slot = unsafe { &mut *first.byte_add(offset as usize) };
-                if !slot.walker.place.is_end() {
-                    // SAFETY: this list holds rays at leaves, at nodes of what moves, and at the end; the caller promises the CPU.
-                    unsafe { slot.walker.step_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
+                let place = slot.walker.place;
+                slot.passing = 0;
+                if place.is_block() {
+                    // SAFETY: the tree's places lead to what they say; the caller promises the CPU.
+                    unsafe {
+                        let block: *const Block = arena::get(ground.lines, place.line());
+                        slot.search.counters.primitives_tested += place.count() as u64;
+                        slot.passing = B::edges(block, &slot.ray, &mut slot.weights) & ((1 << place.count()) - 1);
+                    }
                 }
+                passed[n_passed & (IN_FLIGHT - 1)] = offset;
+                through[n_through & (IN_FLIGHT - 1)] = offset;
+                n_passed += usize::from(slot.passing != 0);
+                n_through += usize::from(slot.passing == 0);
+            }
+            // then the planes of those that are passed,
+            for &offset in &passed[..n_passed] {
+                // SAFETY: slots in the lists hold rays.
+                let slot = unsafe { &mut *first.byte_add(offset as usize) };
+                // SAFETY: the block that was looked at above.
+                unsafe { cross::<B, ANY>(slot, &ground) };
+                through[n_through & (IN_FLIGHT - 1)] = offset;
+                n_through += 1;
+            }
+            // and on to what is left.
+            for &offset in &through[..n_through] {
+                // SAFETY: slots in the lists hold rays.
+                let slot = unsafe { &mut *first.byte_add(offset as usize) };
+                // SAFETY: the caller promises the CPU.
+                unsafe { slot.walker.after_leaf::<B, ANY>(&slot.ray, &mut slot.search, &ground) };
                 // Who is through makes room.
                 if slot.walker.place.is_end() {
                     queue.finish(slot);
@@ -205,6 +237,30 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
                 }
                 prefetch(&ground, slot.walker.place);
                 lists.sort(slot.walker.place, offset, &mut n);
+            }
+        }
+    }
+}
+
+/// Offer the crossings with the triangles whose edges are passed.
+///
+/// # Safety
+/// The ray is at a block, of which `passing` and `weights` speak; the CPU has what `B` needs.
+#[inline(always)]
+unsafe fn cross<B: Backend, const ANY: bool>(slot: &mut Slot<ANY>, ground: &Ground<ANY>) {
+    // SAFETY: the caller promises as much.
+    unsafe {
+        let block: *const Block = arena::get(ground.lines, slot.walker.place.line());
+        let mut passing = slot.passing;
+        loop {
+            let lane = passing.trailing_zeros() as usize & 7;
+            passing &= passing - 1;
+            if let Some(crossing) = B::crossing(block, lane, &slot.ray, slot.weights.assume_init_ref()) {
+                let (geometry, index) = ground.tree.numbers.ids((&(*block).numbers)[lane]);
+                slot.search.offer(ground.level, geometry, index, crossing);
+            }
+            if passing == 0 {
+                return;
             }
         }
     }

@@ -202,6 +202,34 @@ impl Walker {
         }
     }
 
+    /// Go on from a block that was tested; from any other leaf, test what is in it first.
+    ///
+    /// # Safety
+    /// As [`Walker::step_leaf`], or the end of the way.
+    #[inline(always)]
+    pub unsafe fn after_leaf<B: Backend, const ANY: bool>(
+        &mut self,
+        ray: &PreparedRay,
+        search: &mut Search<ANY>,
+        ground: &Ground<ANY>,
+    ) {
+        // SAFETY: the caller promises as much.
+        unsafe {
+            if !self.place.is_block() {
+                if !self.place.is_end() {
+                    self.step_leaf::<B, ANY>(ray, search, ground);
+                }
+                return;
+            }
+            self.lower_limit(ray, search, ground);
+            if search.is_done() {
+                self.place = Place::END;
+            } else {
+                self.next::<B>();
+            }
+        }
+    }
+
     /// Test what is in the leaf where the ray is, and go on; or step on a node of what moves.
     ///
     /// # Safety
