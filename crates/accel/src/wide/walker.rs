@@ -81,7 +81,8 @@ impl Walker {
             (&raw mut (*w).limit).write(0.0);
             (&raw mut (*w).limit_key).write(0);
             (&raw mut (*w).stack.len).write(1);
-            (&raw mut (*w).stack.entries[0]).write(MaybeUninit::new(Entry { keys: guard, children: &raw const NOWHERE }));
+            (&raw mut (*w).stack.entries[0])
+                .write(MaybeUninit::new(Entry { keys: guard, children: &raw const NOWHERE }));
             &mut *w
         };
         if !ground.tree.unbounded.is_empty() {
