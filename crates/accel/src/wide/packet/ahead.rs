@@ -5,6 +5,9 @@ use super::PACKET;
 use crate::hit::Hit;
 use kirkas_geometry::Ray;
 
+/// Lines of each kind that are loaded at a time; fewer than a processor can wait for at once.
+const LINES: usize = 6;
+
 /// What the next packet will touch, to be loaded little by little while this one is under way.
 pub(super) struct Ahead {
     next: [*const i8; 2],
@@ -24,7 +27,7 @@ impl Ahead {
     /// Start to load a little more.
     #[inline(always)]
     pub fn load(&mut self) {
-        for _ in 0..self.lines.min(3) {
+        for _ in 0..self.lines.min(LINES) {
             self.lines -= 1;
             for next in &mut self.next {
                 #[cfg(target_arch = "x86_64")]

@@ -163,20 +163,16 @@ impl Packet<'_> {
             // SAFETY: the node is valid, and the caller promises the CPU.
             let mut keys = unsafe { B::packet_boxes(node, &self.rays.frustum, limit) };
             let from = count;
-            loop {
+            count += keys.0.iter().filter(|key| **key != NO_KEY).count();
+            for entry in waiting[from..count].iter_mut().rev() {
                 // SAFETY: the caller promises the CPU.
                 let (key, child) = unsafe { B::least(&keys) };
-                if key == NO_KEY {
-                    break;
-                }
                 // SAFETY: the caller promises the CPU.
                 keys = unsafe { B::without(&keys, child) }.0;
                 // SAFETY: the node is valid.
                 let inner = unsafe { (&(*node).children)[child & 7] };
-                waiting[count].write(Waiting { among: inside, place: inner, parent: place, child: child as u8, key });
-                count += 1;
+                entry.write(Waiting { among: inside, place: inner, parent: place, child: child as u8, key });
             }
-            waiting[from..count].reverse();
 
             // Take up the nearest that some ray enters.
             loop {
