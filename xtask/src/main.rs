@@ -31,7 +31,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "povray", doc: "six scenes beside POV-Ray, picture against picture", run: povray::run },
     Chore {
         name: "bench",
-        doc: "renders against POV-Ray and Mitsuba [renders] [--quick] [--json FILE]; `bench kernel`: rays against Embree",
+        doc: "renders against POV-Ray and Mitsuba [renders] [--quick] [--json FILE]; `bench kernel`: rays against Embree; `bench converge`: time to an error",
         run: bench::run,
     },
     Chore { name: "fuzz", doc: "run every fuzz target [SECONDS each, 600]", run: fuzz::run },
