@@ -6,6 +6,7 @@ mod dist;
 mod fuzz;
 mod gallery;
 mod leaks;
+mod long;
 mod mutants;
 mod povray;
 mod sanitize;
@@ -38,6 +39,8 @@ const CHORES: &[Chore] = &[
     Chore { name: "mutants", doc: "mutation-test optics and the integrators [COUNT, 100]", run: mutants::run },
     Chore { name: "sanitize", doc: "unsafe code under Miri and AddressSanitizer", run: sanitize::run },
     Chore { name: "leaks", doc: "rays out of closed meshes, hits lost by a structure [COUNT, 10^8]", run: leaks::run },
+    Chore { name: "bias", doc: "the bias of adaptive sampling on rare light [SEEDS, 1000]", run: long::bias },
+    Chore { name: "hostile", doc: "random scenes: no number that is none [SCENES, 10000]", run: long::hostile },
     Chore { name: "dist", doc: "a stripped binary archive for people without a toolchain", run: dist::run },
     Chore { name: "docs", doc: "write the manual and the schema cut from the tables", run: dist::docs },
 ];

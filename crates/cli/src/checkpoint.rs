@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct Checkpoint {
     path: PathBuf,
     header: Header,
-    start: u32,
+    samples: Range<u32>,
     last: Instant,
     /// From one checkpoint to the next, if they are cheap.
     usual: Duration,
@@ -30,9 +30,10 @@ const LONGEST: Duration = Duration::from_secs(55);
 const SHARE: u32 = 20;
 
 impl Checkpoint {
-    /// At `path`, for samples from `start` on, about every `usual` seconds.
-    pub fn new(path: &Path, header: &Header, start: u32, usual: Duration) -> Self {
-        Checkpoint { path: path.into(), header: header.clone(), start, last: Instant::now(), usual, wait: usual }
+    /// At `path`, of a render of these samples, about every `usual` seconds.
+    pub fn new(path: &Path, header: &Header, samples: &Range<u32>, usual: Duration) -> Self {
+        let samples = samples.clone();
+        Checkpoint { path: path.into(), header: header.clone(), samples, last: Instant::now(), usual, wait: usual }
     }
 
     /// Write one if it is time.
@@ -43,7 +44,7 @@ impl Checkpoint {
     /// Write one.
     pub fn save(&mut self, film: &Film) -> Result<(), Problem> {
         let begun = Instant::now();
-        tell_samples(&mut self.header, film, self.start);
+        tell_samples(&mut self.header, film, &self.samples);
         let mut image = film.to_image(Depth::Float);
         self.header.write_to(&mut image);
         write_part(film, &mut image);

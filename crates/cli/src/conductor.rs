@@ -1,7 +1,6 @@
 //! The command line's say in a render: the progress bar, Ctrl-C, the time limit, checkpoints.
 
 use crate::checkpoint::Checkpoint;
-use crate::parts::taken;
 use crate::problem::Problem;
 use crate::report;
 use indicatif::ProgressBar;
@@ -42,8 +41,9 @@ impl Conductor {
         let mut per_sample = Duration::ZERO;
         let mut is_first = true;
         loop {
-            let done = taken(film).0;
-            let left = (samples.end - samples.start).saturating_sub(done);
+            let wanted = samples.end - samples.start;
+            let Some((done, _)) = film.going_on() else { return counted };
+            let left = wanted.saturating_sub(done);
             let is_late = self.deadline.is_some_and(|d| Instant::now() + per_sample / 2 > d);
             if left == 0 || STOPS.load(Ordering::Relaxed) > 0 || (is_late && !is_first) {
                 return counted;
@@ -53,6 +53,9 @@ impl Conductor {
             let pass = samples.start..samples.start + done + length;
             counted = counted.plus(&renderer.render(film, pass, self));
             per_sample = begun.elapsed() / length;
+            if renderer.target.is_some() {
+                self.bar.set_position(settled(film, wanted));
+            }
             is_first = false;
         }
     }
@@ -71,7 +74,7 @@ impl Conductor {
             checkpoint.save(film)?;
         }
         Ok(match STOPS.load(Ordering::Relaxed) {
-            _ if taken(film).0 >= wanted => None,
+            _ if film.going_on().is_none_or(|(least, _)| least >= wanted) => None,
             0 => Some(TIME_IS_UP),
             _ => Some(STOPPED),
         })
@@ -98,6 +101,12 @@ impl Control for Conductor {
         self.save(film);
         true
     }
+}
+
+/// Samples that a film has, or will never need, of `wanted` per pixel.
+pub fn settled(film: &Film, wanted: u32) -> u64 {
+    let counts = film.tiles.iter().flat_map(|t| &t.counts);
+    counts.map(|c| u64::from(if c.is_stopped { wanted } else { c.taken })).sum()
 }
 
 /// Why nothing more should begin, if so.

@@ -12,6 +12,9 @@
 //! | `kirkas.frame` | which frame of a film, if it is one |
 //! | `kirkas.crop` | which part of the whole image, if not all: `x0,y0,x1,y1` |
 //! | `kirkas.samples` | which samples of each pixel, such as `0..64` |
+//! | `kirkas.error` | the error target of adaptive sampling; pixels that stopped have fewer samples |
+//! | `kirkas.clamp` | the firefly clamp, if there is one: the picture is darker than the truth |
+//! | `kirkas.relight` | how light groups were mixed, if by `relight` |
 //! | `kirkas.unfinished` | if stopped within a pass: which further samples some pixels have |
 //! | `kirkas.invalid` | samples left out because they were not finite, if any |
 //! | `kirkas.strata` | how many samples per pixel the sampler was made for, if it cannot give more |
@@ -30,12 +33,13 @@ const UNITS: &str = "linear, scene-referred, Rec.709 primaries; 1.0 is one unit 
 const PREFIX: &str = "kirkas.";
 
 /// Texts that must agree between pictures that are added, and what is said where they do not.
-const MUST_AGREE: [(&str, &str); 6] = [
+const MUST_AGREE: [(&str, &str); 7] = [
     ("version", "the version of Kirkas"),
     ("scene_hash", "the scene"),
     ("overrides", "the overrides"),
     ("seed", "the seed"),
     ("frame", "the frame"),
+    ("relight", "the mix of lights"),
     ("strata", "the number of samples that the sampler was made for"),
 ];
 

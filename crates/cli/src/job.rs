@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::commands::render::Render;
-use crate::conductor::Conductor;
+use crate::conductor::{Conductor, settled};
 use crate::header::Header;
 use crate::output::{print_out, write_atomically};
 use crate::parts::tell_samples;
@@ -56,11 +56,10 @@ impl Job<'_> {
 
         // Render.
         let usual = Duration::from_secs(self.args.checkpoint_seconds);
-        let checkpoint = places.checkpoint.as_ref().map(|path| Checkpoint::new(path, &header, samples.start, usual));
+        let checkpoint = places.checkpoint.as_ref().map(|path| Checkpoint::new(path, &header, samples, usual));
         let wanted = samples.end - samples.start;
         let pixels = prepared.film.crop.area() as u64;
-        let done: u64 = film.tiles.iter().flat_map(|t| &t.counts).map(|c| u64::from(c.taken)).sum();
-        let bar = self.progress.picture(pixels * u64::from(wanted), done);
+        let bar = self.progress.picture(pixels * u64::from(wanted), settled(&film, wanted));
         let render_started = Instant::now();
         let conductor = Conductor::new(bar, self.deadline, checkpoint);
         let counted = conductor.render(&prepared.renderer(usize::from(self.args.flock)), &mut film, samples.clone());
@@ -69,12 +68,22 @@ impl Job<'_> {
         // Write.
         // The checkpoint first: should the pictures fail, nothing is lost.
         let stopped = conductor.finish(&film, wanted);
-        let done = tell_samples(&mut header, &film, samples.start);
+        let done = tell_samples(&mut header, &film, samples);
         self.development.write(&film, &header, &places.pictures)?;
         let stopped = stopped?;
+        let late = [unfinished_blocks(&film, prepared, wanted), invalid_samples(&film, prepared.frame)];
+        let late: Vec<Diagnostic> = late.into_iter().flatten().collect();
         seconds.total = begun.elapsed().as_secs_f64();
         if self.args.stats.is_some() {
-            let json = stats_json(&header.texts(), prepared, &film, &done, &counted, seconds, &self.warnings);
+            let json = stats_json(
+                &header.texts(),
+                prepared,
+                &film,
+                &done,
+                &counted,
+                seconds,
+                &[&self.warnings[..], &late].concat(),
+            );
             let text = format!("{json:#}\n");
             match &places.stats {
                 Some(path) => write_atomically(path, text.as_bytes())?,
@@ -89,8 +98,8 @@ impl Job<'_> {
                 let taken = done.end - done.start;
                 report::note(format_args!("kirkas: {why} after {taken} of {wanted} samples per pixel{of_frame}"));
             }
-            if film.invalid_samples() > 0 && !self.args.quiet {
-                report::print(&Default::default(), &[invalid_samples(&film, prepared.frame)]);
+            if !self.args.quiet {
+                report::print(&Default::default(), &late);
             }
         });
         Ok(stopped.is_none())
@@ -108,7 +117,24 @@ impl Job<'_> {
     }
 }
 
-fn invalid_samples(film: &Film, frame: Option<u32>) -> Diagnostic {
+/// Some blocks took all samples that they may, and are not good enough yet.
+fn unfinished_blocks(film: &Film, prepared: &Prepared, wanted: u32) -> Option<Diagnostic> {
+    let target = prepared.target?;
+    let (c, is_at_end) = (film.convergence(), film.going_on().is_some_and(|(least, _)| least >= wanted));
+    (is_at_end && c.open > 0).then(|| {
+        let message = format!(
+            "{} of {} blocks did not reach the error {} in {wanted} samples per pixel",
+            c.open, c.blocks, target.error
+        );
+        Diagnostic::warning("error-not-reached", message)
+            .help("give them more (`--spp N`), with --checkpoint and --resume from where they are, or ask for less")
+    })
+}
+
+fn invalid_samples(film: &Film, frame: Option<u32>) -> Option<Diagnostic> {
+    if film.invalid_samples() == 0 {
+        return None;
+    }
     let places: Vec<String> = film
         .tiles
         .iter()
@@ -119,5 +145,5 @@ fn invalid_samples(film: &Film, frame: Option<u32>) -> Diagnostic {
     let of_frame = frame.map_or(String::new(), |n| format!(" of frame {n}"));
     let message =
         format!("{} samples{of_frame} were left out: they were not finite, or absurdly bright", film.invalid_samples());
-    Diagnostic::warning("invalid-samples", message).help(format!("look at {}", places.join(", ")))
+    Some(Diagnostic::warning("invalid-samples", message).help(format!("look at {}", places.join(", "))))
 }

@@ -10,11 +10,13 @@ mod aov_picture;
 mod bench_table;
 mod checkpoint;
 mod conductor;
+mod denoise;
 mod disk_files;
 mod frames;
 mod header;
 mod input;
 mod job;
+mod light_mix;
 mod output;
 mod parts;
 mod pictures;
@@ -46,6 +48,7 @@ enum Command {
     Convert(commands::convert::Convert),
     Diff(commands::diff::Diff),
     Merge(commands::merge::Merge),
+    Relight(commands::relight::Relight),
     Bench(commands::bench::Bench),
     Schema(commands::schema::Schema),
     Completions(commands::completions::Completions),
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => commands::convert::run(args),
         Command::Diff(args) => commands::diff::run(args),
         Command::Merge(args) => commands::merge::run(args),
+        Command::Relight(args) => commands::relight::run(args),
         Command::Bench(args) => commands::bench::run(args),
         Command::Schema(args) => commands::schema::run(args),
         Command::Completions(args) => commands::completions::run(args),

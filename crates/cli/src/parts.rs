@@ -49,9 +49,11 @@ pub fn taken(film: &Film) -> (u32, u32) {
     (counts().min().unwrap_or(0), counts().max().unwrap_or(0))
 }
 
-/// Say in the header which samples the film has now, from `start` on.
-pub fn tell_samples(header: &mut Header, film: &Film, start: u32) -> Range<u32> {
-    let (least, most) = taken(film);
+/// Say in the header which of the samples that are asked for the film has now. Pixels that adaptive sampling has stopped count
+/// as if they had all.
+pub fn tell_samples(header: &mut Header, film: &Film, asked: &Range<u32>) -> Range<u32> {
+    let start = asked.start;
+    let (least, most) = film.going_on().unwrap_or((asked.end - start, asked.end - start));
     let range = start..start.saturating_add(least);
     header.set("samples", SampleRanges::one(range.clone()).to_string());
     let unfinished =

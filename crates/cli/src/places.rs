@@ -68,14 +68,16 @@ impl Places {
     pub fn all(&self, development: &Development) -> Vec<PathBuf> {
         let pictures = self.pictures.iter().map(|f| f.path.clone());
         let layers = development.aov_files(&self.pictures).into_iter().map(|l| l.0);
-        pictures.chain(layers).chain(self.stats.clone()).chain(self.checkpoint.clone()).collect()
+        let noisy = development.noisy_files(&self.pictures).into_iter().map(|f| f.path);
+        pictures.chain(layers).chain(noisy).chain(self.stats.clone()).chain(self.checkpoint.clone()).collect()
     }
 
     /// True when all pictures are there, finished, and made as `header` says.
     pub fn hold(&self, header: &Header, development: &Development) -> bool {
         let header = development.told(header);
         let is_made = |path: &Path, format| header_of(path, format).is_some_and(|h| h.is_of_same_picture(&header));
-        self.pictures.iter().all(|f| is_made(&f.path, f.format))
+        let noisy = development.noisy_files(&self.pictures);
+        self.pictures.iter().chain(&noisy).all(|f| is_made(&f.path, f.format))
             && development.aov_files(&self.pictures).iter().all(|l| is_made(&l.0, PictureFormat::Png))
             && self.stats.as_ref().is_none_or(|path| path.exists())
     }

@@ -23,7 +23,7 @@ pub struct SceneArgs {
 }
 
 /// Told by texts of their own in a picture's header.
-const TOLD_APART: [&str; 4] = ["sampler.samples", "sampler.seed", "film.exposure", "film.tone"];
+const TOLD_APART: [&str; 5] = ["sampler.samples", "sampler.max_samples", "sampler.seed", "film.exposure", "film.tone"];
 
 /// Sets values and remembers them.
 pub struct Settings<'a> {
@@ -45,6 +45,7 @@ impl<'a> Settings<'a> {
             Value::Int(i) => i.to_string(),
             Value::Float(f) => f.to_string(),
             Value::Text(t) => t.clone(),
+            Value::Bool(b) => b.to_string(),
             other => format!("{other:?}"),
         };
         let description = &mut self.scene.description;
@@ -61,6 +62,25 @@ impl<'a> Settings<'a> {
             entity.params = Map::default();
         }
         self.flag(flag, &format!("{}.type", kind.section()), name);
+    }
+
+    /// The error target of adaptive sampling, if the sampler is not of a fixed number of samples.
+    pub fn error_target(&mut self, error: f64) {
+        let sampler = self.scene.description.single(Kind::Sampler).map_or("", |e| &e.type_name.text);
+        if sampler == "stratified" {
+            let message = "`--error` needs a sampler to whose samples more can be added, which `stratified` is not";
+            let help = "take another, such as `-D sampler.type=sobol`, or a number of samples instead";
+            self.errors.push(Diagnostic::error("no-more-samples", message).help(help));
+        } else {
+            self.flag("--error", "sampler.error", error);
+        }
+    }
+
+    /// Samples per pixel; of adaptive sampling, at most.
+    pub fn samples(&mut self, samples: i64) {
+        let sampler = self.scene.description.single(Kind::Sampler);
+        let is_adaptive = sampler.and_then(|e| e.params.get("error")?.number()).is_some_and(|e| e > 0.0);
+        self.flag("--spp", if is_adaptive { "sampler.max_samples" } else { "sampler.samples" }, samples);
     }
 
     /// All shutters open at `time`, for as long as they did.

@@ -63,6 +63,10 @@ pub fn stats_json(
         "peak_rss_bytes": peak_rss_bytes(),
         "nan_samples": film.invalid_samples(),
         "nan_locations": invalid.map(|s| json!({ "x": s.x, "y": s.y, "sample": s.sample })).collect::<Vec<_>>(),
+        "adaptive": prepared.target.map(|target| {
+            let c = film.convergence();
+            json!({ "error": target.error, "blocks": c.blocks, "open_blocks": c.open, "mean_samples": c.mean_samples })
+        }),
         "warnings": shown,
     })
 }

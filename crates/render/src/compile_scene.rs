@@ -6,6 +6,7 @@
 use crate::background::Background;
 use crate::camera::Camera;
 use crate::catalog::{ACCELERATORS, catalog};
+use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
 use crate::film::{AovSet, FilmLayout, Rect};
 use crate::frames::{bad_geometry, frame_time, is_moving};
@@ -48,8 +49,12 @@ pub struct Prepared {
     pub shift: [f64; 2],
     /// Which sample points.
     pub sampler: SamplerKind,
-    /// Samples per pixel.
+    /// Samples per pixel; with a target, at most.
     pub samples: u32,
+    /// When blocks of pixels have samples enough; `None` = never.
+    pub target: Option<ErrorTarget>,
+    /// The most that a channel of one contribution brings; 0 = no clamp.
+    pub clamp: f32,
     /// Which of all pictures.
     pub seed: u64,
     /// The frame of a film, if it is one.
@@ -85,6 +90,8 @@ impl Prepared {
             shift: self.shift,
             sampler: self.sampler,
             seed: frame_seed(self.seed, self.frame),
+            target: self.target,
+            clamp: self.clamp,
             resolution: self.film.size,
             planes: self.film.planes(),
             keeps_aovs: !self.film.aovs.is_empty(),
@@ -109,13 +116,23 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     let (p, s) = (singles.params(Kind::Film), singles.params(Kind::Sampler));
     let filter =
         Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
+    let target = ErrorTarget::new(&s);
+    if target.is_some() && film.crop.area() != film.size.0 as usize * film.size.1 as usize {
+        return Err(vec![adaptive_crop(&s)]);
+    }
+    let clamp = p.f32("clamp");
+    if clamp > 0.0 {
+        warnings.push(clamp_warning(&p));
+    }
     let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
     Ok(Prepared {
         integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
         filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
         shift: p.vector2("shift"),
         sampler: SamplerKind::new(&s),
-        samples: s.integer("samples") as u32,
+        samples: s.integer(if target.is_some() { "max_samples" } else { "samples" }) as u32,
+        target,
+        clamp,
         seed: s.integer("seed") as u64,
         frame: options.frame,
         frames_per_second,
@@ -152,6 +169,19 @@ fn bad_filter(p: &Params) -> Diagnostic {
     Diagnostic::error("bad-filter", "this filter cannot have this radius")
         .at(p.span("filter_radius"), "here")
         .help("leave `filter_radius` out for the filter's own")
+}
+
+fn adaptive_crop(p: &Params) -> Diagnostic {
+    Diagnostic::error("adaptive-crop", "adaptive sampling looks at the whole image, so it cannot render a crop of it")
+        .at(p.span("error"), "adaptive")
+        .help("render the whole image, or give a number of samples instead (`--spp N -D sampler.error=0`)")
+}
+
+fn clamp_warning(p: &Params) -> Diagnostic {
+    let message = format!("contributions are clamped at {}: the image is darker than the truth", p.number("clamp"));
+    Diagnostic::warning("firefly-clamp", message)
+        .at(p.span("clamp"), "clamped")
+        .help("leave `clamp` out, and take more samples instead, for an image without bias")
 }
 
 fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> {

@@ -289,7 +289,7 @@ const DONE: usize = usize::MAX;
 
 /// Round a contribution once and add it to its sample.
 fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64, light: Light, group: u32) {
-    let rgb = slot.lanes.to_film(light);
+    let rgb = clamped(slot.lanes.to_film(light), r.clamp);
     let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
     let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
         slot.is_invalid = true;
@@ -298,4 +298,10 @@ fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64,
     let sum = &mut slot.sums[if r.planes > 1 { group as usize } else { 0 }];
     *sum = [sum[0] + red, sum[1] + green, sum[2] + blue];
     observer.contribution(slot.id, branch, group, light, [red, green, blue]);
+}
+
+/// The same colour, no channel beyond `most`; 0 = as it is.
+fn clamped(rgb: [f32; 3], most: f32) -> [f32; 3] {
+    let greatest = rgb[0].abs().max(rgb[1].abs()).max(rgb[2].abs());
+    if most > 0.0 && greatest > most { rgb.map(|c| c * (most / greatest)) } else { rgb }
 }

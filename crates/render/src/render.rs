@@ -1,6 +1,7 @@
 //! The main path, on one page: for every pass, tile, pixel and sample, a camera ray; then flocks until all is added up.
 
 use crate::camera::CameraSample;
+use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
 use crate::film::{AovSample, Film, Tile};
 use crate::flock::Flock;
@@ -26,6 +27,10 @@ pub struct Renderer<'a> {
     pub sampler: SamplerKind,
     /// Which of all pictures.
     pub seed: u64,
+    /// When blocks of pixels have samples enough; `None` = never.
+    pub target: Option<ErrorTarget>,
+    /// The most that a channel of one contribution brings; 0 = no clamp.
+    pub clamp: f32,
     /// Moves every sample on the film, in pixels, x right, y down.
     pub shift: [f64; 2],
     /// The whole image, in pixels.
@@ -46,7 +51,7 @@ pub trait Control: Sync {
     fn between(&self, _film: &Film) -> bool {
         true
     }
-    /// Called after each pass over the image, all pixels having equally many samples. `false` stops.
+    /// Called after each pass over the image, all pixels that go on having equally many samples. `false` stops.
     fn after_pass(&self, _film: &Film) -> bool {
         true
     }
@@ -71,15 +76,17 @@ const LONGEST_PASS: u32 = 16;
 const TILES_PER_THREAD: usize = 16;
 
 impl Renderer<'_> {
-    /// Bring every pixel of `film` to samples `samples`. Pixels that have some already (resumed, stopped) get the rest: a
-    /// tile that has taken n of them goes on with `samples.start + n`.
+    /// Bring every pixel of `film` to samples `samples`, but for those that adaptive sampling stops. Pixels that have some
+    /// already (resumed, stopped) get the rest: a tile that has taken n of them goes on with `samples.start + n`.
     pub fn render(&self, film: &mut Film, samples: Range<u32>, control: &dyn Control) -> Statistics {
         let mut statistics = Statistics::default();
-        let least = film.tiles.iter().map(|t| t.counts.first().map_or(0, |c| c.taken)).min().unwrap_or(0);
-        let mut done = samples.start.saturating_add(least).min(samples.end);
-        while done < samples.end {
-            let taken = done - samples.start;
-            let pass_end = done + taken.clamp(1, LONGEST_PASS).min(samples.end - done);
+        while let Some(taken) = self.going_on(film) {
+            let done = samples.start.saturating_add(taken);
+            if done >= samples.end {
+                break;
+            }
+            let to_round = self.target.map_or(u32::MAX, |t| t.next_round(taken) - taken);
+            let pass_end = done + taken.clamp(1, LONGEST_PASS).min(samples.end - done).min(to_round);
             let (tiles, at_once) = (film.tiles.len(), TILES_PER_THREAD * rayon::current_num_threads());
             for first in (0..tiles).step_by(at_once) {
                 let chunk = &mut film.tiles[first..(first + at_once).min(tiles)];
@@ -96,7 +103,6 @@ impl Renderer<'_> {
                     return statistics;
                 }
             }
-            done = pass_end;
             if !control.after_pass(film) {
                 break;
             }
@@ -104,12 +110,29 @@ impl Renderer<'_> {
         statistics
     }
 
+    /// Stop what has samples enough; the fewest that a pixel which goes on has, if any does.
+    fn going_on(&self, film: &mut Film) -> Option<u32> {
+        let (least, most) = film.going_on()?;
+        match self.target.filter(|t| least == most && t.is_round(least)) {
+            Some(target) => {
+                film.judge(&target);
+                film.going_on().map(|g| g.0)
+            }
+            None => Some(least),
+        }
+    }
+
     /// Take the samples of a tile that are missing up to (not including) sample `end`.
     fn render_tile<O: Observer>(&self, tile: &mut Tile, start: u32, end: u32, observer: &mut O) -> Statistics {
         let rect = tile.rect;
-        let first = start + tile.counts.first().map_or(0, |c| c.taken);
+        let Some(taken) = tile.counts.iter().find(|c| !c.is_stopped).map(|c| c.taken) else {
+            return Statistics::default();
+        };
+        let first = start + taken;
+        let is_stopped: Vec<bool> = tile.counts.iter().map(|c| c.is_stopped).collect();
         let samples = near_to_near(rect.width(), rect.height()).flat_map(move |(x, y)| {
             let pixel = y as usize * rect.width() as usize + x as usize;
+            let end = if is_stopped[pixel] { first } else { end };
             (first..end).map(move |sample| (pixel, SampleId { x: rect.x0 + x, y: rect.y0 + y, sample }))
         });
         Flock::new(self, self.flock, observer).run(tile, samples)

@@ -44,6 +44,9 @@ pub fn run(args: &Merge) -> Result<Outcome, Problem> {
     let mut sum = read_whole(first)?;
     for path in others {
         let part = read_whole(path)?;
+        for (part, path) in [(&sum, first), (&part, path)] {
+            refuse_adaptive(part, path)?;
+        }
         add(&mut sum, &part, first, path)?;
     }
     let mut header = sum.header;
@@ -57,6 +60,7 @@ pub fn run(args: &Merge) -> Result<Outcome, Problem> {
         tone: header.get("tone").to_string(),
         is_half: args.half,
         keeps_integers: !args.flat,
+        denoiser: None,
         aovs: aov_args::parse(&names)?,
     };
     development.write(&sum.film, &header, &files)?;
@@ -73,6 +77,22 @@ fn read_whole(path: &Path) -> Result<Part, Problem> {
                 format!("`{}` was stopped within a pass: some pixels also have samples {range}", path.display());
             let help = "finish it first: render it again with --checkpoint and --resume";
             Err(Problem::input(Diagnostic::error("unfinished-part", message).help(help)))
+        }
+    }
+}
+
+/// Each pixel of an adaptive picture has its own number of samples, and which, another part decides.
+fn refuse_adaptive(part: &Part, path: &Path) -> Result<(), Problem> {
+    match part.header.get("error") {
+        "" => Ok(()),
+        error => {
+            let message = format!(
+                "`{}` was sampled adaptively, to an error of {error}, so nothing can be added to it",
+                path.display()
+            );
+            let help =
+                "render parts with a number of samples (`--samples A..B -D sampler.error=0`), or the whole in one go";
+            Err(Problem::input(Diagnostic::error("adaptive-part", message).help(help)))
         }
     }
 }

@@ -6,5 +6,6 @@ pub mod completions;
 pub mod convert;
 pub mod diff;
 pub mod merge;
+pub mod relight;
 pub mod render;
 pub mod schema;

@@ -2,6 +2,7 @@
 
 use crate::aov_args::{self, AovArg};
 use crate::conductor::{watch_for_stops, why_to_stop};
+use crate::denoise::Denoiser;
 use crate::frames;
 use crate::header::Header;
 use crate::job::Job;
@@ -25,6 +26,8 @@ use std::time::{Duration, Instant};
 const EXAMPLES: &str = "Examples:
   kirkas render scenes/sphereflake.toml -o flake.png
   kirkas render scene.toml -o out.exr -o out.png --spp 256 --aov depth,normals
+  kirkas render scene.toml --error 0.02 --aov sample_count -o out.exr
+  kirkas render scene.toml --light-groups --samples 0..256 -o lights.exr
   kirkas render scene.toml --spp 4096 --checkpoint night.exr --resume -o out.exr
   kirkas render scene.toml --frames 0..48 --resume -o out.####.png -D film.frames_per_second=25
   ffmpeg -framerate 25 -i out.%04d.png -pix_fmt yuv420p out.mp4";
@@ -41,9 +44,12 @@ pub struct Render {
     /// How light is found
     #[arg(long, value_name = "NAME")]
     integrator: Option<String>,
-    /// Samples per pixel
+    /// Samples per pixel; with --error, at most
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     spp: Option<i64>,
+    /// Sample blocks of 8x8 pixels until the noise of each is below this share of its brightness
+    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = finite)]
+    error: Option<f64>,
     /// Size of the whole image in pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(i64, i64)>,
@@ -87,6 +93,13 @@ pub struct Render {
     /// Extra layers: depth[:NEAR:FAR], normals, albedo, position, object_id, material_id, sample_count, variance
     #[arg(long, value_name = "NAME[:ARGS],...", value_delimiter = ',')]
     aov: Vec<String>,
+    /// Keep one EXR layer per light, or group of lights, for `kirkas relight`
+    #[arg(long)]
+    light_groups: bool,
+    /// Remove the noise with Open Image Denoise, if it is installed; the noisy picture is kept as OUT.noisy.png, and in an EXR
+    /// the denoised one is the layer `denoised`
+    #[arg(long)]
+    denoise: bool,
     /// Write what it cost as JSON; `-` is stdout
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
@@ -116,6 +129,7 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
         stats: args.stats.clone().filter(|p| p.as_os_str() != "-"),
         checkpoint: args.checkpoint.clone(),
     };
+    let denoiser = args.denoise.then(Denoiser::find).transpose()?;
     let frames: Vec<Option<u32>> = args.frames.clone().map_or(vec![None], |all| all.map(Some).collect());
     let places_of = |frame: Option<u32>| match (frame, &args.frames) {
         (Some(n), Some(all)) => places.of_frame(n, all),
@@ -134,7 +148,8 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let mut scene = SceneFile::open(&args.scene.scene, args.scene.root.as_deref())?;
     let overrides = apply(args, &mut scene)?;
     let mut seconds = Seconds { load: started.elapsed().as_secs_f64(), ..Seconds::default() };
-    let options = Options { crop: args.crop, aovs: aov_args::set(&aovs), frame: frames[0] };
+    let kept = aov_args::set(&aovs).with(if denoiser.is_some() { &["albedo", "normals"] } else { &[] });
+    let options = Options { crop: args.crop, aovs: kept, frame: frames[0] };
     let build_started = Instant::now();
     let prepared = prepare(&scene.description, &scene.assets(), &options);
     let mut prepared = prepared.map_err(|d| Problem::from(scene.failure(d)))?;
@@ -148,9 +163,14 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
 
     let samples = args.samples.clone().unwrap_or(0..prepared.samples);
     check_limit(&prepared, &samples)?;
+    if prepared.target.is_some() && args.samples.is_some() {
+        let message = "adaptive sampling looks at all samples so far, so it cannot render some of them";
+        let help = "leave out --samples, or give `-D sampler.error=0`";
+        return Err(Problem::input(Diagnostic::error("adaptive-part", message).help(help)));
+    }
 
     // Nothing that the scene was made of may be lost.
-    let development = development(args, &prepared, aovs);
+    let development = development(args, &prepared, aovs, denoiser);
     let inputs: Vec<PathBuf> = scene.files.record().keys().map(|k| true_place(&scene.root.join(k))).collect();
     for &frame in &frames {
         check_no_loss(places_of(frame).all(&development).iter().map(PathBuf::as_path), &inputs)?;
@@ -160,6 +180,8 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     let scene_name = args.scene.scene.to_string_lossy();
     let mut header = Header::new(&scene_name, &scene.files, &overrides, prepared.seed);
     header.set("aov", aov_args::text(&development.aovs));
+    header.set("error", prepared.target.map_or(String::new(), |t| t.error.to_string()));
+    header.set("clamp", if prepared.clamp > 0.0 { prepared.clamp.to_string() } else { String::new() });
     header.set("strata", prepared.sampler.limit().map_or(String::new(), |n| n.to_string()));
     header.set("crop", args.crop.map_or(String::new(), |c| format!("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)));
     let job = Job {
@@ -226,8 +248,14 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
         set.flag("--size", "film.width", width);
         set.flag("--size", "film.height", height);
     }
+    if let Some(error) = args.error {
+        set.error_target(error);
+    }
     if let Some(n) = args.spp {
-        set.flag("--spp", "sampler.samples", n);
+        set.samples(n);
+    }
+    if args.light_groups {
+        set.flag("--light-groups", "film.light_groups", true);
     }
     if let Some(n) = args.seed {
         set.flag("--seed", "sampler.seed", n);
@@ -247,12 +275,13 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     set.finish()
 }
 
-fn development(args: &Render, prepared: &Prepared, aovs: Vec<AovArg>) -> Development {
+fn development(args: &Render, prepared: &Prepared, aovs: Vec<AovArg>, denoiser: Option<Denoiser>) -> Development {
     Development {
         exposure: prepared.exposure,
         tone: prepared.tone.clone(),
         is_half: args.half,
         keeps_integers: args.samples.is_some(),
+        denoiser,
         aovs,
     }
 }

@@ -2,13 +2,16 @@
 
 mod common;
 
+mod adaptive;
 mod aovs;
 mod bench;
 mod bits;
 mod commands;
+mod denoise;
 mod errors;
 mod faults;
 mod films;
 mod interruptions;
 mod pages;
+mod relight;
 mod samplers;

@@ -39,6 +39,16 @@ impl AovSet {
         AOVS.iter().position(|a| a.0 == name).is_some_and(|i| self.0 >> i & 1 == 1)
     }
 
+    /// With these as well.
+    pub fn with(self, names: &[&str]) -> Self {
+        AovSet(self.0 | AovSet::from_names(names.iter().copied()).unwrap_or_default().0)
+    }
+
+    /// The others.
+    pub fn without(self, name: &str) -> Self {
+        AovSet(AOVS.iter().position(|a| a.0 == name).map_or(self.0, |i| self.0 & !(1 << i)))
+    }
+
     /// Names, in the order of [`AOVS`].
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         AOVS.iter().map(|a| a.0).filter(move |n| self.has(n))

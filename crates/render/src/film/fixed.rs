@@ -7,7 +7,6 @@
 pub const LARGEST: f64 = (1_u64 << 40) as f64;
 
 const UNIT: f64 = 18_446_744_073_709_551_616.0; // 2^64
-const SQUARE_UNIT: f64 = 4_294_967_296.0; // 2^32
 
 /// `v` in units of 2^-64, rounded to the nearest, ties to even; `None` when it is not finite or absurdly large.
 pub fn from_f64(v: f64) -> Option<i128> {
@@ -40,21 +39,55 @@ pub fn to_f64(sum: i128) -> f64 {
     high as f64 + low as f64 / UNIT
 }
 
-/// The square of a sum in units of 2^-32, for second moments.
+/// The square of a sum in units of 2^-64, for second moments; at most `i128::MAX`.
 pub fn square(sum: i128) -> i128 {
     let v = to_f64(sum);
-    from_f64_scaled(v * v)
-}
-
-/// `v >= 0` in units of 2^-32; what a square of at most 2^80 needs.
-fn from_f64_scaled(v: f64) -> i128 {
-    const SMALL: f64 = (1_u64 << 30) as f64;
-    if v < SMALL { i128::from((v * SQUARE_UNIT) as u64) } else { (v * SQUARE_UNIT) as i128 }
+    let square = v * v * UNIT;
+    const SMALL: f64 = (1_u64 << 63) as f64;
+    if square < SMALL { i128::from(square as u64) } else { square as i128 }
 }
 
 /// Back to a number.
 pub fn square_to_f64(sum: i128) -> f64 {
-    sum as f64 / SQUARE_UNIT
+    sum as f64 / UNIT
+}
+
+/// `sum * factor`, rounded once to the nearest, ties to even; at most `i128::MAX`. Nothing where the factor is no finite number.
+pub fn scaled(sum: i128, factor: f64) -> i128 {
+    let bits = factor.to_bits();
+    let exponent = (bits >> 52 & 0x7ff) as i32;
+    if exponent == 0 || exponent == 0x7ff {
+        return 0;
+    }
+    // factor = mantissa * 2^-shift; the product has 181 bits at most.
+    let mantissa = u128::from(bits & ((1 << 52) - 1) | 1 << 52);
+    let magnitude = sum.unsigned_abs();
+    let low = (magnitude & u128::from(u64::MAX)) * mantissa;
+    let high = (magnitude >> 64) * mantissa + (low >> 64);
+    let rounded = shifted(high >> 64, high << 64 | low & u128::from(u64::MAX), 1075 - exponent).min(i128::MAX as u128);
+    if (sum < 0) != (factor < 0.0) { -(rounded as i128) } else { rounded as i128 }
+}
+
+/// (high * 2^128 + low) / 2^shift, rounded to the nearest, ties to even; at most `u128::MAX`. `high` has 53 bits at most.
+fn shifted(high: u128, low: u128, shift: i32) -> u128 {
+    let fits = |value: u128, by: u32| value == 0 || by <= value.leading_zeros();
+    let (whole, rest) = match shift {
+        // The rest is what is cut off, in units of 2^-128.
+        ..=0 => match high == 0 && fits(low, shift.unsigned_abs()) {
+            true => (low.checked_shl(shift.unsigned_abs()).unwrap_or(0), 0),
+            false => return u128::MAX,
+        },
+        1..128 => match fits(high, 128 - shift as u32) {
+            true => (high << (128 - shift) | low >> shift, low << (128 - shift)),
+            false => return u128::MAX,
+        },
+        128 => (high, low),
+        // What is below the last bit of `low` only breaks ties.
+        129..256 => (high >> (shift - 128), high << (256 - shift) | low >> (shift - 128) | u128::from(low != 0)),
+        _ => (0, 0),
+    };
+    const HALF: u128 = 1 << 127;
+    whole + u128::from(rest > HALF || (rest == HALF && whole & 1 == 1))
 }
 
 /// As four 32-bit words, lowest first: how images store it.
@@ -106,8 +139,45 @@ mod tests {
 
     #[test]
     fn squares_of_large_sums_do_not_overflow() {
-        let largest = from_f64(LARGEST).unwrap();
-        assert!(square(largest).checked_mul(1 << 14).is_some());
-        assert_eq!(square_to_f64(square(from_f64(3.0).unwrap())), 9.0);
+        assert_eq!(square(from_f64(LARGEST).unwrap()), i128::MAX);
+        for v in [3.0, 0.5, -1e-6, 1e9] {
+            let square = square_to_f64(square(from_f64(v).unwrap()));
+            assert!((square - v * v).abs() <= 1e-15 * v * v + 2.0_f64.powi(-64), "{v}: {square}");
+        }
+    }
+
+    #[test]
+    fn scaling_rounds_once_to_the_nearest() {
+        for (sum, factor, expected) in [
+            (12, 1.0, 12),
+            (-12, 0.25, -3),
+            (10, 0.25, 2),
+            (14, 0.25, 4),
+            (-7, -2.0, 14),
+            (1 << 100, 2.0_f64.powi(-100), 1),
+            (i128::MAX, 1.0, i128::MAX),
+            (i128::MAX, 4.0, i128::MAX),
+            (-i128::MAX, 2.0, -i128::MAX),
+            (1, 2.0_f64.powi(126), 1 << 126),
+            (1, 2.0_f64.powi(-2000), 0),
+            (0, 1e300, 0),
+            (5, f64::NAN, 0),
+            (5, f64::INFINITY, 0),
+            (3, 0.5, 2),
+            (1, 0.5, 0),
+            (1, 0.500_000_1, 1),
+        ] {
+            assert_eq!(scaled(sum, factor), expected, "{sum} * {factor}");
+        }
+        let mut bits = 0x3ff1_2345_6789_abcd_u64;
+        for _ in 0..5000 {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (sum, factor) = (i128::from(bits as i64 >> 20), f64::from(bits as u32) / 65_536.0);
+            // Products of up to 52 bits times up to 32: exact in 128, factor in units of 2^-16.
+            let exact = sum * i128::from(bits as u32);
+            let (whole, rest) = (exact >> 16, exact & 0xffff);
+            let up = rest > 0x8000 || (rest == 0x8000 && whole & 1 == 1);
+            assert_eq!(scaled(sum, factor), whole + i128::from(up), "{sum} * {factor}");
+        }
     }
 }

@@ -48,13 +48,11 @@ impl Film {
             Depth::Half => ChannelData::F16(values),
             Depth::Float => ChannelData::F32(values),
         };
+        let groups = layer_names(&self.layout.groups);
         for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
             image.push(name, floats(self.plane(|t, i| t.mean(i)[c])));
-            for (g, group) in self.layout.groups.iter().enumerate() {
-                image.push(
-                    format!("group.{}.{name}", layer_name(group)),
-                    floats(self.plane(|t, i| t.plane_mean(i, g)[c])),
-                );
+            for (g, group) in groups.iter().enumerate() {
+                image.push(format!("group.{group}.{name}"), floats(self.plane(|t, i| t.plane_mean(i, g)[c])));
             }
         }
         for (name, channels, _) in AOVS.iter().filter(|a| self.layout.aovs.has(a.0)) {
@@ -97,9 +95,18 @@ impl Film {
     }
 }
 
-/// Dots separate layers in EXR, so names keep none.
-pub fn layer_name(group: &str) -> String {
-    group.replace('.', "_")
+/// Names of the groups' layers: dots separate layers in EXR, so names keep none, and stay apart by a number where that makes
+/// two the same.
+pub fn layer_names(groups: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for group in groups {
+        let plain = group.replace('.', "_");
+        let numbered = (2..).map(|n| format!("{plain}_{n}"));
+        let is_free = |name: &String| !names.contains(name) && (*name == *group || !groups.contains(name));
+        let name = std::iter::once(plain.clone()).chain(numbered).find(is_free);
+        names.push(name.unwrap_or(plain));
+    }
+    names
 }
 
 #[cfg(test)]
@@ -122,5 +129,11 @@ mod tests {
             let expected: Vec<_> = rows.flat_map(|y| (5..45).map(move |x| [(100 * (y + 3) + x) as f32; 3])).collect();
             assert_eq!(band.pixels, expected);
         }
+    }
+
+    #[test]
+    fn layers_of_groups_have_names_of_their_own() {
+        let names = |all: &[&str]| layer_names(&all.iter().map(|s| s.to_string()).collect::<Vec<_>>());
+        assert_eq!(names(&["sky", "a.b", "a_b", "a.b"]), ["sky", "a_b_2", "a_b", "a_b_3"]);
     }
 }

@@ -1,14 +1,16 @@
 //! The film: integer sums per pixel, light group and AOV. It adds; it never divides until an image is asked for.
 
+pub mod adaptive;
 pub mod aov;
 pub mod filter;
 pub mod fixed;
 pub mod image;
 pub mod part;
+pub mod relight;
 
 use crate::observe::SampleId;
 pub use aov::{AovSample, AovSet};
-use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, TypeSpec, spec::ANY};
+use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, TypeSpec, spec::ANY, spec::NOT_NEGATIVE};
 
 /// The table of `[film]`.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -44,7 +46,10 @@ pub const SPEC: TypeSpec = TypeSpec {
         ParamSpec::number("frames_per_second", 24.0, "`render --frames` opens the shutter for frame n at n over this, in seconds.")
             .unit("1/s")
             .range((0.001, 100_000.0)),
-        ParamSpec::bool("light_groups", false, "Also keep one layer per light group."),
+        ParamSpec::bool("light_groups", false, "Also keep one layer per light group; `kirkas relight` mixes them anew."),
+        ParamSpec::number("clamp", 0.0, "Firefly clamp: the most that one contribution to a sample may bring; 0 = no clamp. It darkens.")
+            .unit("radiance")
+            .range(NOT_NEGATIVE),
     ],
 };
 
@@ -99,6 +104,8 @@ pub struct Counts {
     pub taken: u32,
     /// Samples left out because a contribution was not finite or absurdly large.
     pub invalid: u32,
+    /// Adaptive sampling: it gets no more.
+    pub is_stopped: bool,
 }
 
 /// A rectangle of film; the unit of parallel work.
@@ -108,7 +115,7 @@ pub struct Tile {
     pub rect: Rect,
     /// Per pixel and plane: sums of red, green, blue, unit 2^-64.
     pub sums: Vec<[i128; 3]>,
-    /// Per pixel: sums of squares of the sample's red, green, blue, unit 2^-32.
+    /// Per pixel: sums of squares of the sample's red, green, blue, unit 2^-64, at most `i128::MAX`.
     pub squares: Vec<[i128; 3]>,
     /// Per pixel.
     pub counts: Vec<Counts>,
@@ -174,14 +181,20 @@ impl Film {
     pub fn pixels(&self) -> impl Iterator<Item = (u32, u32, &Tile, usize)> {
         self.tiles.iter().flat_map(|t| {
             (0..t.rect.area()).map(move |i| {
-                let (dx, dy) = (i as u32 % t.rect.width(), i as u32 / t.rect.width());
-                (t.rect.x0 + dx, t.rect.y0 + dy, t, i)
+                let (x, y) = t.place(i);
+                (x, y, t, i)
             })
         })
     }
 }
 
 impl Tile {
+    /// Where pixel number `pixel` of this tile is in the image.
+    pub fn place(&self, pixel: usize) -> (u32, u32) {
+        let width = self.rect.width();
+        (self.rect.x0 + pixel as u32 % width, self.rect.y0 + pixel as u32 / width)
+    }
+
     /// Add one sample of pixel number `pixel` of this tile.
     pub fn add(&mut self, pixel: usize, id: SampleId, sample: &FinishedSample) {
         let counts = &mut self.counts[pixel];
@@ -203,7 +216,8 @@ impl Tile {
             }
         }
         for c in 0..3 {
-            self.squares[pixel][c] += fixed::square(total[c]);
+            let sum = &mut self.squares[pixel][c];
+            *sum = sum.saturating_add(fixed::square(total[c]));
         }
         if let Some(aovs) = &mut self.aovs {
             aovs.add(pixel, id.sample, &sample.aov);
@@ -234,15 +248,21 @@ impl Tile {
 
     /// Variance of the mean, per channel (unbiased; 0 for fewer than two samples).
     pub fn variance_of_mean(&self, pixel: usize) -> [f32; 3] {
+        self.moments(pixel).1.map(|v| v as f32)
+    }
+
+    /// A pixel's mean colour, and the variance of that mean per channel (unbiased; 0 for fewer than two samples).
+    pub fn moments(&self, pixel: usize) -> ([f64; 3], [f64; 3]) {
         let c = &self.counts[pixel];
-        let n = f64::from(c.taken - c.invalid);
-        if n < 2.0 {
-            return [0.0; 3];
-        }
-        let mean = self.mean(pixel);
-        std::array::from_fn(|i| {
-            let square = fixed::square_to_f64(self.squares[pixel][i]) / n;
-            ((square - f64::from(mean[i]) * f64::from(mean[i])).max(0.0) / (n - 1.0)) as f32
-        })
+        let n = f64::from((c.taken - c.invalid).max(1));
+        let planes = self.sums.len() / self.counts.len();
+        let sums = &self.sums[pixel * planes..(pixel + 1) * planes];
+        let mean: [f64; 3] =
+            std::array::from_fn(|i| fixed::to_f64(sums.iter().fold(0, |t: i128, s| t.wrapping_add(s[i]))) / n);
+        let variance = std::array::from_fn(|i| match n < 2.0 {
+            true => 0.0,
+            false => (fixed::square_to_f64(self.squares[pixel][i]) / n - mean[i] * mean[i]).max(0.0) / (n - 1.0),
+        });
+        (mean, variance)
     }
 }

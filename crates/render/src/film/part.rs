@@ -50,6 +50,9 @@ pub fn write_part(film: &Film, image: &mut Image) {
     }
     image.push("kirkas.count.taken", ChannelData::U32(film.plane(|t, i| t.counts[i].taken)));
     image.push("kirkas.count.invalid", ChannelData::U32(film.plane(|t, i| t.counts[i].invalid)));
+    if film.tiles.iter().flat_map(|t| &t.counts).any(|c| c.is_stopped) {
+        image.push("kirkas.count.stopped", ChannelData::U32(film.plane(|t, i| u32::from(t.counts[i].is_stopped))));
+    }
     let text = |s: String| Attribute::Text(s);
     image.attributes.insert(
         "kirkas.groups".into(),
@@ -131,7 +134,11 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
         each(&mut |t, i, at| t.squares[i][c] = value(&words, at));
     }
     let (taken, invalid) = (integers("kirkas.count.taken")?, integers("kirkas.count.invalid")?);
-    each(&mut |t, i, at| t.counts[i] = Counts { taken: taken[at], invalid: invalid[at].min(taken[at]) });
+    let stopped = image.channel("kirkas.count.stopped").and_then(ChannelData::integers);
+    each(&mut |t, i, at| {
+        let is_stopped = stopped.is_some_and(|s| s[at] != 0);
+        t.counts[i] = Counts { taken: taken[at], invalid: invalid[at].min(taken[at]), is_stopped };
+    });
     if !aovs.is_empty() {
         for k in 0..VALUES {
             let words = sums(format!("aov.{k}"))?;
@@ -174,8 +181,8 @@ impl Film {
             return Err(PartError::Different(what));
         }
         for (a, b) in self.tiles.iter_mut().zip(&other.tiles) {
-            add(&mut a.sums, &b.sums);
-            add(&mut a.squares, &b.squares);
+            add(&mut a.sums, &b.sums, i128::wrapping_add);
+            add(&mut a.squares, &b.squares, i128::saturating_add);
             for (x, y) in a.counts.iter_mut().zip(&b.counts) {
                 x.taken += y.taken;
                 x.invalid += y.invalid;
@@ -189,10 +196,8 @@ impl Film {
     }
 }
 
-fn add(sums: &mut [[i128; 3]], others: &[[i128; 3]]) {
+fn add(sums: &mut [[i128; 3]], others: &[[i128; 3]], plus: fn(i128, i128) -> i128) {
     for (a, b) in sums.iter_mut().zip(others) {
-        for c in 0..3 {
-            a[c] = a[c].wrapping_add(b[c]);
-        }
+        *a = std::array::from_fn(|c| plus(a[c], b[c]));
     }
 }

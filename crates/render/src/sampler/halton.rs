@@ -2,7 +2,7 @@
 //! powers of six.
 //!
 //! # Parameters
-//! `samples` per pixel; `seed`.
+//! As for `sobol`.
 //!
 //! # Example
 //! ```toml

@@ -1,7 +1,7 @@
 //! Independent random numbers, by hash: the plainest sampler, to compare others against.
 //!
 //! # Parameters
-//! `samples` per pixel; `seed`.
+//! As for `sobol`.
 //!
 //! # Example
 //! ```toml

@@ -1,12 +1,15 @@
 //! Everything that the renderer promises.
 
+mod adaptive;
 mod backgrounds;
 mod bodies;
 mod cameras;
+mod contributions;
 mod effects;
 mod everything;
 mod films;
 mod filters;
+mod hostile;
 mod light_sampling;
 mod manuals;
 mod numbers;
