@@ -265,6 +265,7 @@ fn compile(
     });
     let radius = scene_radius(&world, &aggregates, &instances);
     let powers: Vec<f64> = lights.iter().map(|l| l.lamp.power(&materials, &textures, radius)).collect();
+    let picker = LightPicker::new(&singles.params(Kind::Integrator), &lights, &materials, &powers);
 
     // What rays search.
     let geometry = |parts: &[PlacedPart], overrides: &[u32]| -> Vec<Geometry> {
@@ -340,7 +341,7 @@ fn compile(
         instances,
         materials,
         textures,
-        picker: LightPicker::by_power(&powers),
+        picker,
         lights,
         ambient,
         background,

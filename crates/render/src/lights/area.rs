@@ -1,7 +1,8 @@
 //! Shining surfaces as lights: any shape with an `emitter` material. Sampled by solid angle where the shape knows how
 //! (spheres), else by area.
 
-use super::{LightSample, Target};
+use super::tree::LightBounds;
+use super::{Cone, LightSample, Target};
 use crate::materials::Material;
 use crate::shapes::{AreaSample, Surface};
 use crate::textures::{TexturePoint, Textures};
@@ -10,7 +11,7 @@ use kirkas_geometry::rounding::gamma;
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
 use kirkas_optics::Lanes;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 /// One shining part.
@@ -97,6 +98,27 @@ impl AreaLight {
             _ => 1.0,
         };
         self.surface.area().map_or(0.0, |area| (r2 / (area * growth * cosine)) as f32)
+    }
+
+    /// Where it is at any time, and the ways it faces.
+    pub fn reach(&self, power: f64, is_two_sided: bool) -> LightBounds {
+        let (bounds, normals) = (self.surface.bounds(), self.surface.normals());
+        let (bounds, normals) = match &self.placement {
+            None => (bounds, normals),
+            Some(p) if p.is_moving() => {
+                let (first, last) = p.key_times().fold((0.0_f64, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
+                (p.swept_bounds(&bounds, first, last), Cone::ALL)
+            }
+            Some(p) => {
+                let m = p.at(0.0);
+                // Only turns keep the angles of a cone; a single normal stays one under any map.
+                let keeps = normals.angle == 0.0 || is_similarity(&m);
+                let axis = transform_normal(&m.inverse(), normals.axis).normalize();
+                (bounds.transformed(&m), if keeps { Cone { axis, ..normals } } else { Cone::ALL })
+            }
+        };
+        let normals = if is_two_sided { Cone::ALL } else { normals };
+        LightBounds { bounds, normals, spread: FRAC_PI_2, power }
     }
 
     /// For emission given as power: 1 / (pi area).

@@ -17,6 +17,7 @@
 //! # References
 //! Irradiance on a surface: E cos(theta).
 
+use super::pick::Reach;
 use super::point::COLOR;
 use super::{LightSample, units};
 use core::f64::consts::PI;
@@ -62,6 +63,11 @@ impl DirectionalLight {
     /// The power that crosses a disk of this radius, all lanes together, W.
     pub fn power(&self, radius: f64) -> f64 {
         PI * radius * radius * self.irradiance.sum()
+    }
+
+    /// That it comes from one direction, infinitely far.
+    pub fn reach(&self) -> Reach {
+        Reach::Far { irradiance: self.irradiance.sum(), towards: Some(self.towards) }
     }
 
     /// What arrives anywhere.

@@ -30,6 +30,7 @@ use kirkas_geometry::DVec3;
 use kirkas_geometry::hash::of_name;
 use kirkas_optics::{Lanes, Light, Palette};
 use kirkas_scene::{Fallback, ParamSpec, ParamType, Params, TypeSpec};
+use pick::Reach;
 use std::sync::Arc;
 
 /// Every light type.
@@ -134,6 +135,21 @@ impl Lamp {
             Lamp::Directional(l) => l.sample(lanes),
             Lamp::Area(l) => l.sample(lanes, materials, textures, from, time, u),
             Lamp::Background(l) => l.sample(lanes, u),
+        }
+    }
+
+    /// From where, and about how much, given its power.
+    pub fn reach(&self, materials: &[Material], power: f64) -> Reach {
+        match self {
+            Lamp::Point(l) => Reach::Near(l.reach(power)),
+            Lamp::Spot(l) => Reach::Near(l.reach(power)),
+            Lamp::Directional(l) => l.reach(),
+            Lamp::Area(l) => {
+                let emission = materials[l.material as usize].emission.as_ref();
+                Reach::Near(l.reach(power, emission.is_some_and(|e| e.two_sided)))
+            }
+            // Half of it comes from below; some of the rest from straight above.
+            Lamp::Background(l) => Reach::Far { irradiance: 0.5 * l.total_radiance(), towards: None },
         }
     }
 

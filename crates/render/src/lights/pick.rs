@@ -5,7 +5,32 @@
 //! `point` is where light is wanted, in the world; `normal` the unit geometric normal of the side from which it must come, zero
 //! where it may come from all around (boundaries that let light through, points in space).
 
+use super::LightEntry;
+use super::tree::{LightBounds, LightTree, more_digits};
+use crate::materials::Material;
 use kirkas_geometry::DVec3;
+use kirkas_scene::{ParamSpec, Params};
+
+/// How a light reaches the scene.
+#[derive(Clone, Copy, Debug)]
+pub enum Reach {
+    /// From a bounded place.
+    Near(LightBounds),
+    /// From infinitely far.
+    Far {
+        /// About what it sends onto a surface that faces it, all lanes together, W/m2.
+        irradiance: f64,
+        /// Unit, towards the light, where there is only one direction.
+        towards: Option<DVec3>,
+    },
+}
+
+/// How integrators let their users choose.
+pub const SELECTION: ParamSpec = ParamSpec::choice(
+    "light_selection",
+    &["tree", "power", "uniform"],
+    "How one light among many is chosen: `tree` by what each could send to the point (Conty Estevez & Kulla 2018); `power` by its power; `uniform` evenly.",
+);
 
 /// Chooses lights by number.
 #[derive(Clone, Debug)]
@@ -17,6 +42,7 @@ pub struct LightPicker {
 enum Method {
     Uniform { count: u32 },
     Power(Table),
+    Tree(Box<TreeAndFar>),
 }
 
 /// Of every choice by power, the part that is spread evenly: a weak light may be near, and an estimate of power wrong.
@@ -40,22 +66,164 @@ impl LightPicker {
         LightPicker { method: Method::Power(Table::new(shares)) }
     }
 
+    /// As the integrator's parameters have it, for lights with these powers.
+    pub fn new(integrator: &Params, lights: &[LightEntry], materials: &[Material], powers: &[f64]) -> Self {
+        let can_choose = integrator.spec().params.iter().any(|row| row.name == SELECTION.name);
+        match can_choose.then(|| integrator.text(SELECTION.name)).flatten() {
+            Some("uniform") => Self::uniform(lights.len()),
+            Some("power") => Self::by_power(powers),
+            _ => {
+                Self::by_tree(&lights.iter().zip(powers).map(|(l, p)| l.lamp.reach(materials, *p)).collect::<Vec<_>>())
+            }
+        }
+    }
+
+    /// By what each light could send to the point that asks: near ones by a tree, those infinitely far one by one.
+    pub fn by_tree(lights: &[Reach]) -> Self {
+        LightPicker { method: Method::Tree(Box::new(TreeAndFar::new(lights))) }
+    }
+
     /// A light and the probability with which it was chosen; `None` if there is none. `u` in `[0, 1)`.
-    pub fn pick(&self, _point: DVec3, _normal: DVec3, u: f32) -> Option<(u32, f32)> {
+    pub fn pick(&self, point: DVec3, normal: DVec3, u: f32) -> Option<(u32, f32)> {
         match &self.method {
             Method::Uniform { count: 0 } => None,
             Method::Uniform { count } => Some((((u * *count as f32) as u32).min(count - 1), 1.0 / *count as f32)),
             Method::Power(table) => Some(table.pick(u)),
+            Method::Tree(tree) => tree.pick(point, normal, u),
         }
     }
 
     /// The probability with which `pick` would have chosen light number `light`.
-    pub fn probability(&self, _point: DVec3, _normal: DVec3, light: u32) -> f32 {
+    pub fn probability(&self, point: DVec3, normal: DVec3, light: u32) -> f32 {
         match &self.method {
             Method::Uniform { count } if light < *count => 1.0 / *count as f32,
             Method::Uniform { .. } => 0.0,
             Method::Power(table) => table.probability(light),
+            Method::Tree(tree) => tree.probability(point, normal, light),
         }
+    }
+}
+
+/// A tree of the near lights, beside the far ones.
+#[derive(Clone, Debug)]
+struct TreeAndFar {
+    tree: Option<LightTree>,
+    far: Vec<Far>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Far {
+    light: u32,
+    irradiance: f32,
+    towards: Option<DVec3>,
+}
+
+impl TreeAndFar {
+    fn new(lights: &[Reach]) -> Self {
+        let near = |r: &Reach| match r {
+            Reach::Near(bounds) => Some(*bounds),
+            Reach::Far { .. } => None,
+        };
+        let far = |(i, r): (usize, &Reach)| match *r {
+            Reach::Far { irradiance, towards } if irradiance > 0.0 => {
+                Some(Far { light: i as u32, irradiance: (irradiance as f32).clamp(f32::MIN_POSITIVE, 1e30), towards })
+            }
+            _ => None,
+        };
+        let tree = LightTree::new(&lights.iter().map(near).collect::<Vec<_>>());
+        TreeAndFar { tree, far: lights.iter().enumerate().filter_map(far).collect() }
+    }
+
+    fn pick(&self, point: DVec3, normal: DVec3, u: f32) -> Option<(u32, f32)> {
+        let u = more_digits(u, point);
+        if let (Some(tree), []) = (&self.tree, self.far.as_slice()) {
+            return Some(tree.pick(point, normal, u));
+        }
+        let shares = self.shares(point, normal);
+        if !shares.any() {
+            return None;
+        }
+        let mut rest = u;
+        let mut last = None;
+        for far in &self.far {
+            let p = shares.of(far.arriving(normal));
+            if p > 0.0 && rest < f64::from(p) {
+                return Some((far.light, p));
+            }
+            rest -= f64::from(p);
+            last = if p > 0.0 { Some((far.light, p)) } else { last };
+        }
+        match &self.tree {
+            Some(tree) if shares.near > 0.0 => {
+                let p = shares.of(shares.near);
+                let (light, within) = tree.pick(point, normal, (rest.max(0.0) / f64::from(p)).min(1.0 - f64::EPSILON));
+                Some((light, p * within))
+            }
+            // Rounding left a crumb.
+            _ => last,
+        }
+    }
+
+    fn probability(&self, point: DVec3, normal: DVec3, light: u32) -> f32 {
+        match &self.tree {
+            Some(tree) if self.far.is_empty() => tree.probability(point, normal, light),
+            Some(tree) if tree.holds(light) => {
+                let shares = self.shares(point, normal);
+                shares.of(shares.near) * tree.probability(point, normal, light)
+            }
+            _ => match self.far.iter().find(|f| f.light == light) {
+                Some(far) => self.shares(point, normal).of(far.arriving(normal)),
+                None => 0.0,
+            },
+        }
+    }
+
+    fn shares(&self, point: DVec3, normal: DVec3) -> Shares {
+        // From power to irradiance, for a light between all-round and flat.
+        const PER_POWER: f32 = 0.16;
+        let near = self.tree.as_ref().map_or(0.0, |tree| tree.importance(point, normal) * PER_POWER);
+        let mut shares = Shares { near, total: near, count: u32::from(near > 0.0) };
+        for far in &self.far {
+            let arriving = far.arriving(normal);
+            shares.total += arriving;
+            shares.count += u32::from(arriving > 0.0);
+        }
+        shares
+    }
+}
+
+impl Far {
+    /// About how much of it arrives at a surface of this normal; 0 only if nothing can.
+    fn arriving(&self, normal: DVec3) -> f32 {
+        match self.towards {
+            Some(towards) if normal != DVec3::ZERO => {
+                let cosine = towards.dot(normal) as f32;
+                if cosine > 0.0 { self.irradiance * cosine.max(1e-3) } else { 0.0 }
+            }
+            _ => self.irradiance,
+        }
+    }
+}
+
+/// What arrives, to be shared out: partly in proportion, partly evenly.
+struct Shares {
+    near: f32,
+    total: f32,
+    count: u32,
+}
+
+impl Shares {
+    fn any(&self) -> bool {
+        self.count > 0
+    }
+
+    /// The probability of what sends `arriving`.
+    fn of(&self, arriving: f32) -> f32 {
+        if arriving == 0.0 {
+            return 0.0;
+        }
+        const EVEN: f32 = EVEN_SHARE as f32;
+        EVEN / self.count as f32 + (1.0 - EVEN) * (arriving / self.total)
     }
 }
 
@@ -91,6 +259,7 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kirkas_geometry::Bounds3;
 
     /// Picks with `n` evenly spaced numbers and compares frequencies with what is promised.
     fn check(picker: &LightPicker, lights: u32, n: u32) {
@@ -118,6 +287,41 @@ mod tests {
         check(&LightPicker::by_power(&[0.0, 0.0]), 2, 64);
         assert!(LightPicker::uniform(0).pick(DVec3::ZERO, DVec3::Y, 0.5).is_none());
         assert!(LightPicker::by_power(&[]).pick(DVec3::ZERO, DVec3::Y, 0.5).is_none());
+    }
+
+    fn near(x: f64) -> Reach {
+        let at = DVec3::new(x, 2.0, 0.0);
+        Reach::Near(LightBounds::all_around(Bounds3::around_f64(at, at), 5.0))
+    }
+
+    fn far(irradiance: f64, towards: Option<DVec3>) -> Reach {
+        Reach::Far { irradiance, towards }
+    }
+
+    #[test]
+    fn near_and_far_lights_are_picked_as_often_as_promised() {
+        let (sky, sun) = (far(3.0, None), far(2.0, Some(DVec3::new(0.6, 0.8, 0.0))));
+        for lights in [
+            vec![sky],
+            vec![sun, sky],
+            vec![near(0.0), near(1.0)],
+            vec![sky, near(0.0), sun, near(1.0), near(5.0), far(0.0, None)],
+        ] {
+            check(&LightPicker::by_tree(&lights), lights.len() as u32, 65_536);
+        }
+    }
+
+    #[test]
+    fn lights_behind_a_surface_are_not_picked() {
+        let lights = [far(2.0, Some(DVec3::NEG_Y)), near(0.0), far(1.0, None)];
+        let picker = LightPicker::by_tree(&lights);
+        let p = |normal, light| picker.probability(DVec3::ZERO, normal, light);
+        assert_eq!(p(DVec3::Y, 0), 0.0);
+        assert!(p(DVec3::Y, 1) > 0.1 && p(DVec3::Y, 2) > 0.1);
+        assert_eq!(p(DVec3::NEG_Y, 1), 0.0);
+        assert!((0..3).all(|light| p(DVec3::ZERO, light) > 0.0));
+        assert!(LightPicker::by_tree(&lights[..1]).pick(DVec3::ZERO, DVec3::Y, 0.3).is_none());
+        assert!(LightPicker::by_tree(&[]).pick(DVec3::ZERO, DVec3::Y, 0.3).is_none());
     }
 
     #[test]

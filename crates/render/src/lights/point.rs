@@ -18,9 +18,10 @@
 //! # References
 //! I / r^2: the same power crosses every sphere around the light.
 
+use super::tree::LightBounds;
 use super::{LightSample, Target, units};
 use core::f64::consts::PI;
-use kirkas_geometry::DVec3;
+use kirkas_geometry::{Bounds3, DVec3};
 use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
@@ -76,6 +77,11 @@ impl PointLight {
     /// Its power, all lanes together, W.
     pub fn power(&self) -> f64 {
         4.0 * PI * self.intensity.sum()
+    }
+
+    /// Where it is, and that it shines all around.
+    pub fn reach(&self, power: f64) -> LightBounds {
+        LightBounds::all_around(Bounds3::around_f64(self.position, self.position), power)
     }
 
     /// What arrives at `from`.

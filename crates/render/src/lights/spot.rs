@@ -22,10 +22,11 @@
 //! Warn 1983, "Lighting Controls for Synthetic Images"; Pharr, Jakob & Humphreys 2023, section 12.2.1.
 
 use super::point::{ATTENUATION, COLOR, INTENSITY, POSITION, UNIT, point_target, towards};
-use super::{LightSample, units};
+use super::tree::LightBounds;
+use super::{Cone, LightSample, units};
 use core::f64::consts::PI;
-use kirkas_geometry::DVec3;
-use kirkas_geometry::elementary::cos;
+use kirkas_geometry::elementary::{acos, cos};
+use kirkas_geometry::{Bounds3, DVec3};
 use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -80,6 +81,17 @@ impl SpotLight {
     /// Its power, all lanes together, W.
     pub fn power(&self) -> f64 {
         effective_solid_angle(self.cos_hotspot, self.cos_falloff) * self.intensity.sum()
+    }
+
+    /// Where it is, and its cones.
+    pub fn reach(&self, power: f64) -> LightBounds {
+        let (hotspot, falloff) = (acos(self.cos_hotspot), acos(self.cos_falloff));
+        LightBounds {
+            bounds: Bounds3::around_f64(self.position, self.position),
+            normals: Cone { axis: self.axis, angle: hotspot },
+            spread: falloff - hotspot,
+            power,
+        }
     }
 
     /// Share of the full light at an angle from the axis, given its cosine.

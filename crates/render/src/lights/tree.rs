@@ -2,8 +2,8 @@
 //! root down, at every fork by how much each side could send to the point that asks (Conty Estevez & Kulla 2018,
 //! "Importance Sampling of Many Lights with Adaptive Tree Splitting").
 //!
-//! The walk ends at one light; trees are not split into several walks. Importance bounds by spheres around boxes, as the
-//! cost of the builder does. A light that can send anything to a point never has probability 0 there: all tests for
+//! The walk ends at one light; trees are not split into several walks. Importance takes lights as spread through the spheres
+//! around their boxes, as the cost of the builder does. A light that can send anything to a point never has probability 0 there: all tests for
 //! "cannot" are widened by more than rounding.
 
 use super::cone::Cone;
@@ -20,7 +20,7 @@ pub struct LightBounds {
     pub bounds: Bounds3,
     /// Normals of what shines.
     pub normals: Cone,
-    /// How far from a normal light goes, radians, up to half a right angle times two.
+    /// How far from a normal light goes, radians.
     pub spread: f64,
     /// W, all lanes together.
     pub power: f64,
@@ -193,38 +193,63 @@ impl Node {
         }
     }
 
-    /// An estimate of the light that arrives at `point` on a surface of this normal (zero: on none): Conty Estevez & Kulla
-    /// 2018, equation 3. 0 only if none can.
+    /// An estimate of the light that arrives at `point` on a surface of this normal (zero: on none), for lights spread evenly
+    /// through the sphere. 0 only if none can arrive.
+    ///
+    /// Conty Estevez & Kulla 2018, equation 3, with the cosines of the nearest directions only where they decide about 0.
+    /// The mean of `cos / d^2` over a ball above the horizon is that of its centre (Newton's shell theorem), and that is
+    /// what a good share follows.
     fn importance(&self, point: Vec3, normal: Vec3) -> f32 {
         let to = self.center - point;
         let (d2, r2) = (to.length_squared(), self.radius * self.radius);
+        let has_normal = normal != Vec3::ZERO;
         if d2 <= r2 {
-            // Nothing is known of directions; and nearer than its size it is no nearer.
-            return self.power / r2;
+            // Within the ball: from the mean at its centre, 3/4 or 3 over r^2, to that at its border.
+            let share = (d2 / r2).sqrt();
+            let cosine = if has_normal && d2 > 0.0 { normal.dot(to) / d2.sqrt() } else { 0.0 };
+            let (middle, border) = if has_normal { (0.75, above_horizon(cosine, 1.0)) } else { (3.0, 1.0) };
+            return self.power / r2 * (middle + (border - middle) * share).max(GRAZING);
         }
         let inverse = 1.0 / d2.sqrt();
-        let sin2 = r2 * inverse * inverse;
-        let (sin_u, cos_u) = (sin2.sqrt(), (1.0 - sin2).max(0.0).sqrt());
+        let sin_u = self.radius * inverse;
+        let mut share = inverse * inverse;
 
-        // From the nearest normal that the light may have ...
-        let cos_theta = -self.axis.dot(to) * inverse;
-        let (cos_x, sin_x) = nearer(cos_theta, sine(cos_theta), self.cos_normals, self.sin_normals);
-        let (cos_out, _) = nearer(cos_x, sin_x, cos_u, sin_u);
-        if cos_out <= self.cos_spread {
-            return 0.0;
-        }
-        // ... to the nearest direction in which it may lie.
-        let mut cos_in = 1.0;
-        if normal != Vec3::ZERO {
-            let cos_i = normal.dot(to) * inverse;
-            (cos_in, _) = nearer(cos_i, sine(cos_i), cos_u, sin_u);
-            if cos_in <= -SLACK {
+        // What the lights' normals say ...
+        if self.cos_normals > -1.0 {
+            let cos_u = (1.0 - sin_u * sin_u).max(0.0).sqrt();
+            let cos_theta = -self.axis.dot(to) * inverse;
+            let (cos_x, sin_x) = nearer(cos_theta, sine(cos_theta), self.cos_normals, self.sin_normals);
+            let (cos_nearest, _) = nearer(cos_x, sin_x, cos_u, sin_u);
+            if cos_nearest <= self.cos_spread {
                 return 0.0;
             }
+            let is_lambert = self.cos_spread <= 0.0;
+            share *= if is_lambert { above_horizon(cos_x, sin_u) } else { cos_nearest }.max(GRAZING);
         }
-        const GRAZING: f32 = 1e-3;
-        (self.power * cos_out.max(GRAZING) * cos_in.max(GRAZING) * inverse * inverse).max(f32::MIN_POSITIVE)
+
+        // ... and what the surface's does.
+        if has_normal {
+            let cosine = normal.dot(to) * inverse;
+            if cosine <= -sin_u - SLACK {
+                return 0.0;
+            }
+            share *= above_horizon(cosine, sin_u).max(GRAZING);
+        }
+        (self.power * share).max(f32::MIN_POSITIVE)
     }
+}
+
+/// No cosine counts for less: bounds are crude where light grazes.
+const GRAZING: f32 = 1e-3;
+
+/// The mean cosine of a ball in the direction of this cosine, `sin_u` being the sine of the angle under which its radius is
+/// seen: that of the centre while the ball is above the horizon, fading to 0 where it has set.
+fn above_horizon(cosine: f32, sin_u: f32) -> f32 {
+    if cosine >= sin_u {
+        return cosine;
+    }
+    let rest = (cosine + sin_u).max(0.0);
+    rest * rest / (4.0 * sin_u)
 }
 
 /// By how much cosines are taken to be wrong.

@@ -4,6 +4,7 @@
 //! rounding. What a ray then must stay clear of is only the rounding of its own f32 origin.
 
 use super::{AreaSample, Part, ShapeInput, Surface, SurfacePoint};
+use crate::lights::Cone;
 use kirkas_accel::{Shape, UserShape};
 use kirkas_geometry::rounding::gamma;
 use kirkas_geometry::transform::{is_invertible, transform_normal};
@@ -243,6 +244,11 @@ impl<C: Canonical> Surface for Placed<C> {
 
     fn bounds(&self) -> Bounds3 {
         self.bounds
+    }
+
+    fn normals(&self) -> Cone {
+        let is_in_plane = self.shape.support(DVec3::Z) == 0.0 && self.shape.support(DVec3::NEG_Z) == 0.0;
+        if is_in_plane { Cone::of(self.normal(&self.shape.local(DVec3::ZERO, 0))) } else { Cone::ALL }
     }
 }
 

@@ -25,6 +25,7 @@ mod quadratic;
 mod spheres;
 mod triangles;
 
+use crate::lights::Cone;
 use kirkas_accel as accel;
 use kirkas_geometry::{Bounds3, DAffine3, DVec3, Ray};
 use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, SourceId, TypeSpec};
@@ -150,6 +151,11 @@ pub trait Surface: Send + Sync {
 
     /// A box around all of it, in part space.
     fn bounds(&self) -> Bounds3;
+
+    /// A cone that holds all its normals, in part space.
+    fn normals(&self) -> Cone {
+        Cone::ALL
+    }
 }
 
 /// One entry of the list of shapes.

@@ -2,6 +2,7 @@
 
 use super::analytic::flat_error;
 use super::{AreaSample, Part, Surface, SurfacePoint};
+use crate::lights::Cone;
 use kirkas_accel::Shape;
 use kirkas_geometry::warp::square_to_uniform_triangle;
 use kirkas_geometry::{Bounds3, DAffine3, DVec2, DVec3, Ray, Vec2, Vec3};
@@ -143,5 +144,9 @@ impl Surface for TriangleSurface {
 
     fn bounds(&self) -> Bounds3 {
         self.bounds
+    }
+
+    fn normals(&self) -> Cone {
+        Cone::around((0..self.indices.len() as u32).map(|i| normal(self.corners(i))))
     }
 }
