@@ -68,7 +68,7 @@ impl Scene {
         let mut t = String::new();
         let _ = writeln!(t, "[film]\nwidth = {width}\nheight = {height}\nfilter = \"point\"\ntone = \"raw\"");
         let _ = writeln!(t, "[sampler]\nsamples = 1");
-        let _ = writeln!(t, "[integrator]\nmax_depth = {}\nmin_contribution = 0.0", self.depth);
+        let _ = writeln!(t, "[integrator]\ntype = \"whitted\"\nmax_depth = {}\nmin_contribution = 0.0", self.depth);
         let _ = writeln!(t, "[background]\ncolor = [{}]", v(self.sky));
         let (from, to) = self.camera;
         let _ = writeln!(t, "[cameras.main]\ntype = \"perspective\"\nposition = [{}]\nlook_at = [{}]", v(from), v(to));

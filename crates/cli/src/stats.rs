@@ -54,6 +54,7 @@ pub fn stats_json(
             "reflected": counted.reflected_rays,
             "refracted": counted.refracted_rays,
             "glossy": counted.glossy_rays,
+            "diffuse": counted.diffuse_rays,
             "shadow": counted.shadow_rays,
             "total": counted.rays(),
         },

@@ -79,9 +79,7 @@ fn describe(scene: &mut Description, path: &str, source: SourceId, mesh: &MeshDa
         .with("fov", FOV);
     scene.add(Kind::Camera, Entity::new("camera", "perspective", camera))?;
 
-    // Light: two lamps with soft shadows, and a little from everywhere.
-    let ambient = Map::default().with("color", [0.85, 0.92, 1.0]).with("intensity", 0.12);
-    scene.add(Kind::Light, Entity::new("ambient", "ambient", ambient))?;
+    // Light: two lamps with soft shadows, and a little from the sky.
     scene.add(Kind::Background, Entity::new("", "gradient", Map::default().with("stops", background())))?;
 
     // Put the mesh on a floor that it does not quite touch.

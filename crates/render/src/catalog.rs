@@ -83,7 +83,7 @@ pub const ACCELERATORS: &[(&TypeSpec, AccelKind)] = &[
 pub fn catalog() -> Catalog {
     let mut types: Vec<&'static TypeSpec> = vec![&film::SPEC];
     types.extend(sampler::SAMPLERS);
-    types.extend(integrators::INTEGRATORS);
+    types.extend(integrators::INTEGRATORS.iter().map(|i| i.spec));
     types.extend(ACCELERATORS.iter().map(|a| a.0));
     types.extend(background::BACKGROUNDS);
     types.extend(camera::CAMERAS.iter().copied());

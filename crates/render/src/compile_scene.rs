@@ -10,8 +10,7 @@ use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
 use crate::film::{AovSet, FilmLayout, Rect};
 use crate::frames::{bad_geometry, frame_time, is_moving};
-use crate::integrators::whitted::Whitted;
-use crate::integrators::{Integrator, MediumStack};
+use crate::integrators::{INTEGRATORS, Integrator, MediumStack};
 use crate::lights::collect::{add_area_lights, scene_radius};
 use crate::lights::pick::LightPicker;
 use crate::lights::{Lamp, LightEntry, ambient_radiance};
@@ -124,9 +123,20 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     if clamp > 0.0 {
         warnings.push(clamp_warning(&p));
     }
+    let chosen = singles.params(Kind::Integrator).spec().name;
+    let integrator = INTEGRATORS.iter().find(|i| i.spec.name == chosen).expect("the description was validated");
+    if !scene.ambient.is_empty() && !integrator.knows_ambient {
+        warnings.push(
+            Diagnostic::warning(
+                "no-ambient",
+                format!("`{chosen}` ignores ambient lights: it finds indirect light itself"),
+            )
+            .help("remove them, or choose `[integrator] type = \"whitted\"`"),
+        );
+    }
     let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
     Ok(Prepared {
-        integrator: Box::new(Whitted::new(&singles.params(Kind::Integrator))),
+        integrator: (integrator.build)(&singles.params(Kind::Integrator)),
         filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
         shift: p.vector2("shift"),
         sampler: SamplerKind::new(&s),

@@ -95,7 +95,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 }
             }
             if self.active.is_empty() {
-                return self.statistics;
+                return self.statistics.plus(&self.out.counted);
             }
 
             // Find what they hit.
@@ -170,6 +170,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 RayKind::Reflected => self.statistics.reflected_rays += 1,
                 RayKind::Refracted => self.statistics.refracted_rays += 1,
                 RayKind::Glossy => self.statistics.glossy_rays += 1,
+                RayKind::Diffuse => self.statistics.diffuse_rays += 1,
             }
         }
         self.find_hits(self.first_from_camera.unwrap_or(self.active.len()));
@@ -227,7 +228,7 @@ impl<'a, O: Observer> Flock<'a, O> {
             self.keys.clear();
             for (s, slot) in &shadows {
                 self.rays.push(s.ray);
-                self.keys.push(combine(self.slots[*slot].sampler.key(), s.branch));
+                self.keys.push(AlphaFilter::shadow_key(&self.slots[*slot].sampler, s.branch));
             }
             self.statistics.shadow_rays += shadows.len() as u64;
 

@@ -26,6 +26,8 @@ pub enum PathEnd {
     Depth,
     /// What it could still bring is below the least contribution.
     Contribution,
+    /// Chance ended it, and lets the others count more.
+    Roulette,
 }
 
 /// Is told everything that happens. Every method does nothing unless overridden, and none can change the picture.

@@ -184,6 +184,7 @@ impl Renderer<'_> {
             media: self.scene.camera_media,
             passed: 0,
             travelled: 0.0,
+            last: None,
         };
         Start { path, weight: place.weight, uses_lens, uses_time }
     }

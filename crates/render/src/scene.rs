@@ -6,10 +6,11 @@ use crate::integrators::{MediumStack, ShadowRay};
 use crate::lights::pick::LightPicker;
 use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
+use crate::sampler::Sampler;
 use crate::shapes::Surface;
 use crate::textures::{TexturePoint, Textures};
 use kirkas_accel::{Accel, Hit, HitFilter, NO_INSTANCE};
-use kirkas_geometry::hash::{combine, unit_f32};
+use kirkas_geometry::hash::{combine, of_name, unit_f32};
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
@@ -298,6 +299,11 @@ impl Scene {
         media.materials().iter().copied().reduce(|best, m| if priority(m) >= priority(best) { m } else { best })
     }
 
+    /// How much brighter radiance is in the body that rules in `media`: its index squared.
+    pub fn gain(&self, media: &MediumStack) -> f32 {
+        self.ruling(media).map_or(1.0, |m| self.materials[m as usize].radiance_gain)
+    }
+
     /// True when the boundary of `material` lies inside a body of higher rank and is not there (Schmidt & Budge 2002).
     pub fn is_covered(&self, media: &MediumStack, material: u32, entering: bool) -> bool {
         let priority = |m: u32| self.materials[m as usize].medium.as_ref().map_or(i32::MIN, |x| x.priority);
@@ -365,6 +371,15 @@ pub struct AlphaFilter<'a> {
     /// Per ray: the hash of its sample and branch.
     pub keys: &'a [u64],
 }
+
+impl AlphaFilter<'_> {
+    /// The key of a shadow ray: not its path's, since what let that one pass must not let this one pass as well.
+    pub fn shadow_key(sampler: &Sampler, branch: u64) -> u64 {
+        combine(combine(sampler.key(), branch), SHADOW)
+    }
+}
+
+const SHADOW: u64 = of_name("shadow");
 
 impl HitFilter for AlphaFilter<'_> {
     fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {

@@ -15,6 +15,8 @@ pub struct Statistics {
     pub refracted_rays: u64,
     /// Distributed reflected or refracted rays.
     pub glossy_rays: u64,
+    /// Rays from matte surfaces.
+    pub diffuse_rays: u64,
     /// Shadow rays.
     pub shadow_rays: u64,
     /// Rays that hit something.
@@ -30,7 +32,8 @@ pub struct Statistics {
 impl Statistics {
     /// All rays.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.reflected_rays + self.refracted_rays + self.glossy_rays + self.shadow_rays
+        let bounced = self.reflected_rays + self.refracted_rays + self.glossy_rays + self.diffuse_rays;
+        self.camera_rays + bounced + self.shadow_rays
     }
 
     /// Both together.
@@ -40,6 +43,7 @@ impl Statistics {
         self.reflected_rays += o.reflected_rays;
         self.refracted_rays += o.refracted_rays;
         self.glossy_rays += o.glossy_rays;
+        self.diffuse_rays += o.diffuse_rays;
         self.shadow_rays += o.shadow_rays;
         self.hits += o.hits;
         self.lens_samples += o.lens_samples;

@@ -81,7 +81,7 @@ impl Kind {
         match self {
             Kind::Film => Some("image"),
             Kind::Sampler => Some("sobol"),
-            Kind::Integrator => Some("whitted"),
+            Kind::Integrator => Some("path"),
             Kind::Accelerator => Some("bvh8"),
             Kind::Background => Some("constant"),
             _ => None,

@@ -8,7 +8,7 @@ use std::path::Path;
 pub fn lit(folder: &Path, depth: u32) -> Result<Case, String> {
     let case = Case { name: "flake", folder: folder.into(), has_pov: true, mitsuba: &[] };
     let toml = format!(
-        "{LIT_HEAD}[integrator]\nmax_depth = 5\nmin_contribution = 0.004\n\
+        "{LIT_HEAD}[integrator]\ntype = \"whitted\"\nmax_depth = 5\nmin_contribution = 0.004\n\
          [cameras.main]\ntype = \"perspective\"\nposition = [2.1, 1.3, 1.7]\nlook_at = [0, 0, 0]\nfov = 45\nfov_axis = \"horizontal\"\n\
          [materials.flake]\ntype = \"phong\"\nform = \"classic\"\ndiffuse = 0.2\nambient = 0.04\nreflect = 0.7\n\
          [materials.floor]\ntype = \"phong\"\nform = \"classic\"\ndiffuse = 0.6\nambient = 0.1\n\
@@ -34,7 +34,7 @@ pub fn lit(folder: &Path, depth: u32) -> Result<Case, String> {
 pub fn mirrors(folder: &Path, depth: u32) -> Result<Case, String> {
     let case = Case { name: "mirrors", folder: folder.into(), has_pov: true, mitsuba: &[SCALAR] };
     let toml = format!(
-        "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 4\n[integrator]\nmax_depth = 5\n\
+        "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 4\n[integrator]\ntype = \"whitted\"\nmax_depth = 5\n\
          [background]\ncolor = [0.35, 0.5, 0.7]\n\
          [cameras.main]\ntype = \"perspective\"\nposition = [2.1, 1.3, 1.7]\nlook_at = [0, 0, 0]\nfov = 45\nfov_axis = \"horizontal\"\n\
          [materials.mirror]\ntype = \"mirror\"\nreflectance = 0.7\n\

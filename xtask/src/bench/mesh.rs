@@ -43,7 +43,7 @@ pub fn under_a_sky(folder: &Path, n: usize) -> Result<Case, String> {
     let (points, faces) = displaced_sphere(n);
     write_ply(&folder.join("mesh.ply"), &points, &faces).map_err(|e| e.to_string())?;
     let toml = "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 16\n\
-         [integrator]\nmax_depth = 8\nglossy_samples = 1\nmin_contribution = 0\n[background]\ncolor = [0.35, 0.5, 0.7]\n\
+         [integrator]\ntype = \"whitted\"\nmax_depth = 8\nglossy_samples = 1\nmin_contribution = 0\n[background]\ncolor = [0.35, 0.5, 0.7]\n\
          [cameras.main]\ntype = \"perspective\"\nposition = [1.2, 1.4, 2.6]\nlook_at = [0, 0, 0]\nfov = 45\nfov_axis = \"horizontal\"\n\
          [materials.metal]\ntype = \"rough_mirror\"\nreflectance = 0.7\nroughness = 1.0\n\
          [objects.mesh]\ntype = \"mesh\"\nfile = \"mesh.ply\"\nmaterial = \"metal\"\n";

@@ -42,6 +42,7 @@ light_groups = true
 samples = 8
 
 [integrator]
+type = "whitted"
 max_depth = 4
 glossy_samples = 2
 

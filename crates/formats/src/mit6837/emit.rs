@@ -35,7 +35,7 @@ fn course_settings(d: &mut Description) {
         .with("shade_back", false);
     d.single_mut(Kind::Film).params = film;
     d.single_mut(Kind::Sampler).params = Map::default().with("samples", 1_i64);
-    d.single_mut(Kind::Integrator).params = integrator;
+    *d.single_mut(Kind::Integrator) = Entity::new("", "whitted", integrator);
 }
 
 fn put(map: &mut Map, name: &str, value: At<[f64; 3]>) {

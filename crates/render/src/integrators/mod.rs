@@ -1,16 +1,38 @@
 //! Integrators: how light is found. An integrator is a *step*: given a path and what it hit, which light reaches the pixel,
 //! and which rays go on. One driver moves the rays in flocks, so that the kernel always has many in flight.
 
+pub mod crossing;
+pub mod path;
+pub mod path_simple;
 pub mod whitted;
 
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
-use kirkas_geometry::Ray;
+use crate::statistics::Statistics;
+use kirkas_geometry::{DVec3, Ray};
 use kirkas_optics::{Lanes, Light};
-use kirkas_scene::TypeSpec;
+use kirkas_scene::{Params, TypeSpec};
 
 /// Every integrator type.
-pub const INTEGRATORS: &[&TypeSpec] = &[&whitted::SPEC];
+pub const INTEGRATORS: &[IntegratorType] = &[
+    IntegratorType { spec: &path::SPEC, build: |p| Box::new(path::Path::new(p)), knows_ambient: false },
+    IntegratorType {
+        spec: &path_simple::SPEC,
+        build: |p| Box::new(path_simple::PathSimple::new(p)),
+        knows_ambient: false,
+    },
+    IntegratorType { spec: &whitted::SPEC, build: |p| Box::new(whitted::Whitted::new(p)), knows_ambient: true },
+];
+
+/// One entry of the list of integrators.
+pub struct IntegratorType {
+    /// Its table.
+    pub spec: &'static TypeSpec,
+    /// Makes it from its parameters.
+    pub build: fn(&Params) -> Box<dyn Integrator>,
+    /// It adds ambient lights.
+    pub knows_ambient: bool,
+}
 
 /// Closed bodies that a path is inside of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +82,8 @@ pub enum RayKind {
     Refracted,
     /// One of several around a mirrored or refracted direction.
     Glossy,
+    /// From a matte surface.
+    Diffuse,
 }
 
 /// A path under way: one ray of the tree.
@@ -83,6 +107,19 @@ pub struct PathState {
     pub passed: u32,
     /// Distance travelled through them.
     pub travelled: f32,
+    /// Where the ray was sent from, if lights could have been asked there for what it finds.
+    pub last: Option<LastVertex>,
+}
+
+/// A surface that sent a ray which competes with asking lights.
+#[derive(Clone, Copy, Debug)]
+pub struct LastVertex {
+    /// Where it is.
+    pub position: DVec3,
+    /// The side that light must come from, as for [`LightPicker`](crate::lights::pick::LightPicker).
+    pub normal: DVec3,
+    /// Density per solid angle with which the ray was sent.
+    pub pdf: f32,
 }
 
 /// A ray that asks whether light arrives.
@@ -119,10 +156,12 @@ pub struct StepOutput {
     pub paths: Vec<PathState>,
     /// Set when the path goes no further.
     pub end: Option<crate::observe::PathEnd>,
+    /// Rays that steps traced by themselves, all together.
+    pub counted: Statistics,
 }
 
 impl StepOutput {
-    /// Forget everything.
+    /// Forget everything but the counts.
     pub fn clear(&mut self) {
         self.contributions.clear();
         self.shadow_rays.clear();

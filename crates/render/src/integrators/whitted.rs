@@ -23,14 +23,14 @@
 //! Whitted 1980, "An Improved Illumination Model for Shaded Display"; Cook, Porter & Carpenter 1984, "Distributed Ray
 //! Tracing"; Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
 
-use super::{Integrator, PathState, RayKind, ShadowRay, StepOutput};
+use super::{Integrator, PathState, RayKind, ShadowRay, StepOutput, crossing};
 use crate::lights::Lamp;
 use crate::observe::PathEnd;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::hash::{combine, of_name};
 use kirkas_geometry::{DVec3, Vec3};
-use kirkas_optics::{Bsdf, Interface, Light, Lobe, LobeSet, Mode};
+use kirkas_optics::{Bsdf, Light, Lobe, LobeSet, Mode};
 use kirkas_scene::spec::{NOT_NEGATIVE, UNIT};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -129,15 +129,8 @@ impl Integrator for Whitted {
         let hit = if self.surface_offset { hit } else { &bare };
 
         // Pass boundaries that another body covers.
-        let material = scene.material(hit);
-        let entering = hit.is_front;
-        if material.medium.is_some() && scene.is_covered(&path.media, hit.material, entering) {
-            let media = if entering { path.media.entered(hit.material) } else { path.media.left(hit.material) };
-            if path.passed < MOST_PASSED {
-                let ray = hit.ray_towards(path.ray.direction.as_dvec3(), &path.ray);
-                let travelled = path.travelled + hit.t * path.ray.direction.length();
-                out.paths.push(PathState { ray, media, passed: path.passed + 1, travelled, ..path });
-            }
+        if crossing::is_covered(scene, &path, hit) {
+            out.paths.extend(crossing::passed(&path, hit));
             return;
         }
 
@@ -147,10 +140,10 @@ impl Integrator for Whitted {
             out.contributions.push((path.throughput * emitted, hit.emission_group));
         }
 
-        let bsdf = self.bsdf(scene, &path, hit);
+        let bsdf = crossing::bsdf(scene, &path, hit);
         let wo_world = -path.ray.direction.normalize();
         let wo = hit.frame.to_local(wo_world);
-        let is_boundary = material.medium.is_some();
+        let is_boundary = scene.material(hit).medium.is_some();
 
         if !self.shade_back && !hit.is_front && !is_boundary {
             // The course's rule: backs are black.
@@ -162,33 +155,14 @@ impl Integrator for Whitted {
 
         // Follow mirror and refraction rays.
         if bsdf.lobes().intersects(LobeSet::DELTA | bsdf.traced_lobes()) {
-            self.branch(&path, sampler, hit, &bsdf, wo, is_boundary, out);
+            self.branch(scene, &path, sampler, hit, &bsdf, wo, out);
         } else {
             out.end = Some(PathEnd::Absorbed);
         }
     }
 }
 
-/// Covered boundaries passed in a row before a path is given up.
-const MOST_PASSED: u32 = 256;
-
 impl Whitted {
-    /// The surface's scattering, with the bodies on both its sides.
-    fn bsdf(&self, scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
-        let material = scene.material(hit);
-        let interface = match &material.medium {
-            Some(inside) => {
-                let others = if hit.is_front { path.media } else { path.media.left(hit.material) };
-                let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
-                // A body that was never entered (its boundary touches another's) is left without an event.
-                let is_known = hit.is_front || path.media.materials().contains(&hit.material);
-                Interface { eta_above: outside, eta_below: if is_known { inside.ior } else { outside } }
-            }
-            None => Interface::VACUUM,
-        };
-        scene.bsdf(&path.lanes, hit, interface)
-    }
-
     fn add_ambient(&self, scene: &Scene, path: &PathState, bsdf: &Bsdf, out: &mut StepOutput) {
         let albedo = bsdf.ambient();
         if albedo.is_black() || self.ambient == 0.0 {
@@ -214,7 +188,6 @@ impl Whitted {
         if shaded.is_empty() {
             return;
         }
-        let boundary = scene.material(hit).medium.is_some();
         let traced = if path.depth < self.max_depth { bsdf.traced_lobes() } else { LobeSet::NONE };
         for (number, light) in scene.lights.iter().enumerate() {
             if matches!(light.lamp, Lamp::Background(_)) {
@@ -234,16 +207,10 @@ impl Whitted {
                 let wi = hit.frame.to_local(s.direction.as_vec3());
                 let f = bsdf.eval(wo, wi, lobes, Mode::Radiance);
                 let weight = path.throughput * f * s.light * (wi.z.abs() / count as f32);
-                // Light that a shading normal would let through an opaque surface is not let through.
-                let side = s.direction.dot(hit.normal);
-                if weight.is_black() || side == 0.0 || (side > 0.0) != (wi.z > 0.0) {
+                if weight.is_black() || !crossing::agrees(hit, s.direction, wi.z) {
                     continue;
                 }
-                let media = match (boundary, wi.z > 0.0, hit.is_front) {
-                    (true, false, true) => path.media.entered(hit.material),
-                    (true, true, false) => path.media.left(hit.material),
-                    _ => path.media,
-                };
+                let media = crossing::media_towards(scene, &path.media, hit, s.direction);
                 // What a straight ray meets weakens it as it goes; otherwise it stays in one body all the way.
                 let is_filtered = self.shadows == Shadows::Transparent;
                 let weight = if is_filtered {
@@ -273,12 +240,12 @@ impl Whitted {
     /// Send the rays of the tree.
     fn branch(
         &self,
+        scene: &Scene,
         path: &PathState,
         sampler: &Sampler,
         hit: &SurfaceHit,
         bsdf: &Bsdf,
         wo: Vec3,
-        is_boundary: bool,
         out: &mut StepOutput,
     ) {
         if path.depth >= self.max_depth {
@@ -288,7 +255,7 @@ impl Whitted {
         let before = out.paths.len();
         for s in bsdf.delta_branches(wo, Mode::Radiance) {
             let kind = if s.lobe.is_transmission() { RayKind::Refracted } else { RayKind::Reflected };
-            self.send(path, hit, s.wi, s.lobe, s.weight(), kind, 0, is_boundary, out);
+            self.send(scene, path, hit, s.wi, s.lobe, s.weight(), kind, 0, out);
         }
         let count = if path.depth == 0 { self.glossy_samples } else { 1 };
         for lobe in bsdf.traced_lobes().iter() {
@@ -297,7 +264,7 @@ impl Whitted {
                 let u = sampler.pair_of(purpose, i, count);
                 if let Some(s) = bsdf.sample(wo, 0.0, u, LobeSet::of(lobe), Mode::Radiance) {
                     let weight = s.weight() * (1.0 / count as f32);
-                    self.send(path, hit, s.wi, s.lobe, weight, RayKind::Glossy, i, is_boundary, out);
+                    self.send(scene, path, hit, s.wi, s.lobe, weight, RayKind::Glossy, i, out);
                 }
             }
         }
@@ -308,6 +275,7 @@ impl Whitted {
 
     fn send(
         &self,
+        scene: &Scene,
         path: &PathState,
         hit: &SurfaceHit,
         wi: Vec3,
@@ -315,7 +283,6 @@ impl Whitted {
         weight: Light,
         kind: RayKind,
         number: u32,
-        is_boundary: bool,
         out: &mut StepOutput,
     ) {
         let throughput = path.throughput * weight;
@@ -324,16 +291,9 @@ impl Whitted {
         }
         let direction: DVec3 = hit.frame.to_world(wi).as_dvec3().normalize();
         // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.
-        let goes_up = direction.dot(hit.normal) > 0.0;
-        let from_above = path.ray.direction.as_dvec3().dot(hit.normal) < 0.0;
-        if (goes_up == from_above) == lobe.is_transmission() {
+        if !crossing::keeps_side(hit, direction, lobe) {
             return;
         }
-        let media = match (lobe.is_transmission() && is_boundary, goes_up) {
-            (true, false) => path.media.entered(hit.material),
-            (true, true) => path.media.left(hit.material),
-            _ => path.media,
-        };
         out.paths.push(PathState {
             ray: hit.ray_towards(direction, &path.ray),
             lanes: path.lanes,
@@ -341,9 +301,10 @@ impl Whitted {
             depth: path.depth + 1,
             kind,
             branch: combine(path.branch, u64::from(number) << 8 | lobe as u64),
-            media,
+            media: crossing::media_towards(scene, &path.media, hit, direction),
             passed: 0,
             travelled: 0.0,
+            last: None,
         });
     }
 }

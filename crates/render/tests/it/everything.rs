@@ -34,13 +34,23 @@ fn variant(changes: &[(&str, &str)]) -> String {
 }
 
 /// What else a render may be made of.
-fn variants() -> [String; 2] {
+fn variants() -> [String; 4] {
     let plain = [
         ("shadows = \"transparent\"", "shadows = \"opaque\"\nshade_back = false"),
         ("[sampler]", "[sampler]\ntype = \"independent\""),
         ("filter = \"mitchell\"\nlight_groups = true", "filter = \"gaussian\""),
     ];
-    [SCENE.to_string(), variant(&plain)]
+    let traced = |integrator: &str, sampler: &str| {
+        variant(&[
+            (
+                "type = \"whitted\"\nmax_depth = 6\nmin_contribution = 0.004",
+                &format!("type = \"{integrator}\"\nmax_depth = 20"),
+            ),
+            ("shadows = \"transparent\"\nglossy_samples = 2\n", ""),
+            ("[sampler]", &format!("[sampler]\ntype = \"{sampler}\"")),
+        ])
+    };
+    [SCENE.to_string(), variant(&plain), traced("path", "halton"), traced("path_simple", "stratified")]
 }
 
 fn with_threads<T: Send>(n: usize, work: impl FnOnce() -> T + Send) -> T {

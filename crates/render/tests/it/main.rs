@@ -1,9 +1,11 @@
 //! Everything that the renderer promises.
 
 mod adaptive;
+mod answer_is_one;
 mod backgrounds;
 mod bodies;
 mod cameras;
+mod closed_forms;
 mod contributions;
 mod effects;
 mod everything;
@@ -14,6 +16,7 @@ mod light_sampling;
 mod manuals;
 mod numbers;
 mod observer;
+mod path;
 mod samplers;
 mod scale;
 mod shapes;

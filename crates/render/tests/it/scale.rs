@@ -1,6 +1,6 @@
 //! The same scene a million times smaller and larger; no speckles at grazing light, no light through closed walls.
 
-use crate::support::{Rgb, expose, pixels, prepared, prepared_with};
+use crate::support::{Rgb, assert_agree, expose, pixels, prepared, prepared_with};
 use kirkas_images::to_srgb8;
 use kirkas_images::{RgbImage, ToneCurve};
 use kirkas_render::film::AovSet;
@@ -233,6 +233,25 @@ fn grazing_light_leaves_no_speckles() {
     }
 }
 
+/// All light, bounced as it may: the picture of a small scene is that of a large one, but for noise.
+#[test]
+fn a_traced_path_looks_the_same_at_any_size() {
+    let picture = |s: f64| {
+        let words = "[integrator]\ntype = \"path\"\n[materials.lamp]\ntype = \"emitter\"\nradiance = 2\n\
+                     [objects.lamp]\ntype = \"disk\"\ncenter = [@0.5, @3, @0.5]\nnormal = [0, -1, 0]\nradius = @0.8\nmaterial = \"lamp\"\n";
+        let small = STILL_LIFE.replace("width = 160\nheight = 120", "width = 24\nheight = 18");
+        let plain = small
+            .replace("samples = 1", "type = \"independent\"\nsamples = 300")
+            .replace("intensity = 0.1", "intensity = 0");
+        let p = prepared(&scaled(&format!("{words}{plain}"), s));
+        expose(&p, 0..300).0
+    };
+    let life_size = picture(1.0);
+    for s in [1e-6, 1e6] {
+        assert_agree(&format!("{s} times as large"), &picture(s), &life_size);
+    }
+}
+
 /// Straight above its middle a torus hides no lit point of its upper half.
 #[test]
 fn a_torus_lit_along_its_axis_has_no_speckles() {
@@ -264,14 +283,15 @@ fn no_light_leaks_into_closed_bodies() {
         [objects.panel]\ntype = \"rectangle\"\ncenter = [@0, @3, @0]\nedge_u = [@4, 0, 0]\nedge_v = [0, 0, @4]\nmaterial = \"lamp\"
         [background]\ncolor = 1000\n";
     let ring = ("torus", "type = \"torus\"\nmajor_radius = @0.7\nminor_radius = @0.5");
-    for s in [1e-6, 1.0, 1e6] {
+    let integrators = ["type = \"whitted\"\n", "type = \"path\"\nmax_depth = 6\n"];
+    for (s, integrator) in [1e-6, 1.0, 1e6].into_iter().flat_map(|s| integrators.map(|i| (s, i))) {
         for (name, body) in BODIES.iter().filter(|b| !["disk", "rectangle"].contains(&b.0)).chain([&ring]) {
             for (way, placed) in WAYS.iter().enumerate() {
                 // Close to the wall, looking along it.
                 let eye = if *name == "torus" { "[@0.5, @0.05, @0.45]" } else { "[@0.1, @-0.05, @0.02]" };
                 let toml = scaled(
                     &format!(
-                        "{WHITE}{lamps}{}[film]\nwidth = 24\nheight = 24\nfilter = \"box\"\n[sampler]\nsamples = 4
+                        "[integrator]\n{integrator}{WHITE}{lamps}{}[film]\nwidth = 24\nheight = 24\nfilter = \"box\"\n[sampler]\nsamples = 4
                          [cameras.c]\ntype = \"perspective\"\nposition = {eye}\nlook_at = [@1, @-3, @0.2]\nfov = 150\n",
                         placed.replace("BODY", body)
                     ),
@@ -279,7 +299,7 @@ fn no_light_leaks_into_closed_bodies() {
                 );
                 let (film, _) = expose(&prepared(&toml), 0..4);
                 let leaks = pixels(&film).iter().filter(|p| **p != [0.0; 3]).count();
-                assert_eq!(leaks, 0, "{name} {way} at {s}");
+                assert_eq!(leaks, 0, "{name} {way} at {s} by {integrator}");
             }
         }
     }

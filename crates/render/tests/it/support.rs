@@ -5,6 +5,8 @@ use kirkas_render::film::fixed;
 use kirkas_render::render::Undisturbed;
 use kirkas_render::{Film, Options, Prepared, Statistics, prepare};
 use kirkas_scene::files::{FileAccess, Limits, MemoryFiles};
+use kirkas_scene::{Kind, Name};
+use kirkas_testkit::{Measured, z_test};
 use std::ops::Range;
 
 /// A colour, or any three numbers, in double precision.
@@ -18,7 +20,12 @@ pub fn prepared_with(toml: &str, files: &[(&str, &[u8])], options: &Options) -> 
         all.0.insert((*name).into(), bytes.to_vec());
     }
     let access = FileAccess::new(Box::new(all), Limits::default());
-    let description = load(&access, "scene.toml").unwrap_or_else(|e| panic!("{e:?}\n{toml}"));
+    let mut description = load(&access, "scene.toml").unwrap_or_else(|e| panic!("{e:?}\n{toml}"));
+    // Most tests are about single rays: they speak of `whitted` unless they name another integrator.
+    let integrator = description.single_mut(Kind::Integrator);
+    if !integrator.type_name.span.is_some() {
+        integrator.type_name = Name::new("whitted");
+    }
     let assets = FormatAssets::new(&access, &description.sources);
     prepare(&description, &assets, options).unwrap_or_else(|e| panic!("{e:#?}\n{toml}"))
 }
@@ -80,4 +87,39 @@ pub fn grey(body: &str, from: Rgb, to: Rgb, samples: u32) -> f64 {
 #[track_caller]
 pub fn assert_near(value: f64, truth: f64, tolerance: f64) {
     assert!((value - truth).abs() <= tolerance * truth.abs().max(1e-12), "{value} is not {truth}");
+}
+
+/// Means and variances of the means of all pixels' channels, for a Z-test.
+pub fn noisy(film: &Film) -> (Vec<f64>, Vec<f64>) {
+    let variances = film.pixels().flat_map(|(_, _, tile, i)| tile.variance_of_mean(i)).map(f64::from).collect();
+    (film.pixels().flat_map(|(x, y, _, _)| pixel(film, x, y)).collect(), variances)
+}
+
+/// The expectations of two films are the same, as far as their noise lets one see: pixel by pixel, and all together.
+#[track_caller]
+pub fn assert_agree(what: &str, a: &Film, b: &Film) {
+    let ((mean_a, variance_a), (mean_b, variance_b)) = (noisy(a), noisy(b));
+    let found = z_test(
+        Measured { mean: &mean_a, variance: &variance_a },
+        Measured { mean: &mean_b, variance: &variance_b },
+        1e-3,
+        1e-4,
+    );
+    // The channels of a pixel share their noise: green stands for all.
+    let green = |v: &[f64]| v.iter().skip(1).step_by(3).sum::<f64>();
+    let (sum_a, sum_b) = (green(&mean_a), green(&mean_b));
+    let z = (sum_a - sum_b) / ((green(&variance_a) + green(&variance_b)).sqrt() + 1e-4 * sum_a);
+    println!("{what}: sums {sum_a:.5} and {sum_b:.5}, z {z:.2}, least p {:.1e}", found.p_value);
+    assert!(found.passed, "{what}: {found:?}, {} and {}", mean_a[found.worst], mean_b[found.worst]);
+    assert!(z.abs() < 4.0, "{what}: all together {sum_a} and {sum_b}, z {z}");
+}
+
+/// The one pixel of a picture is `truth` but for its noise, which is at most a share of `precision`.
+#[track_caller]
+pub fn assert_shows(film: &Film, truth: f64, precision: f64) {
+    let (mean, variance) = noisy(film);
+    let error = variance[1].sqrt();
+    println!("{} +- {error:.1e} for {truth}", mean[1]);
+    assert!(error <= precision * truth, "too noisy: {} +- {error} for {truth}", mean[1]);
+    assert!((mean[1] - truth).abs() <= 4.0 * error + 1e-5 * truth, "{} +- {error} is not {truth}", mean[1]);
 }

@@ -1,0 +1,68 @@
+//! What a surface does to a path besides scattering: bodies that are entered and left, boundaries that others cover, and sides
+//! that a shading normal gets wrong. Every integrator does these alike.
+
+use super::{MediumStack, PathState};
+use crate::scene::{Scene, SurfaceHit};
+use kirkas_geometry::DVec3;
+use kirkas_optics::{Bsdf, Interface, Lobe};
+
+/// Covered boundaries passed in a row before a path is given up.
+const MOST_PASSED: u32 = 256;
+
+/// True when the surface is a boundary that lies inside a body of higher rank: then it is not there.
+pub fn is_covered(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> bool {
+    scene.material(hit).medium.is_some() && scene.is_covered(&path.media, hit.material, hit.is_front)
+}
+
+/// The path behind a covered boundary; `None` when it has passed too many.
+pub fn passed(path: &PathState, hit: &SurfaceHit) -> Option<PathState> {
+    let media = if hit.is_front { path.media.entered(hit.material) } else { path.media.left(hit.material) };
+    (path.passed < MOST_PASSED).then(|| PathState {
+        ray: hit.ray_towards(path.ray.direction.as_dvec3(), &path.ray),
+        media,
+        passed: path.passed + 1,
+        travelled: path.travelled + hit.t * path.ray.direction.length(),
+        ..*path
+    })
+}
+
+/// The surface's scattering, with the bodies on both its sides.
+pub fn bsdf(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
+    let interface = match &scene.material(hit).medium {
+        Some(inside) => {
+            let others = if hit.is_front { path.media } else { path.media.left(hit.material) };
+            let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
+            // A body that was never entered (its boundary touches another's) is left without an event.
+            let is_known = hit.is_front || path.media.materials().contains(&hit.material);
+            Interface { eta_above: outside, eta_below: if is_known { inside.ior } else { outside } }
+        }
+        None => Interface::VACUUM,
+    };
+    scene.bsdf(&path.lanes, hit, interface)
+}
+
+/// True when light along `direction` (away from the surface, in the world), which the shading frame has on the side of `local_z`,
+/// is on that side of the true surface as well. Light that a shading normal would let through an opaque surface is not let through.
+pub fn agrees(hit: &SurfaceHit, direction: DVec3, local_z: f32) -> bool {
+    let side = direction.dot(hit.normal);
+    side != 0.0 && (side > 0.0) == (local_z > 0.0)
+}
+
+/// True when `lobe` sends the path to the side of the true surface that such a lobe goes to.
+pub fn keeps_side(hit: &SurfaceHit, direction: DVec3, lobe: Lobe) -> bool {
+    (goes_up(hit, direction) == hit.is_front) != lobe.is_transmission()
+}
+
+/// Bodies around a ray that leaves the surface along `direction`.
+pub fn media_towards(scene: &Scene, media: &MediumStack, hit: &SurfaceHit, direction: DVec3) -> MediumStack {
+    match (goes_up(hit, direction), hit.is_front) {
+        _ if scene.material(hit).medium.is_none() => *media,
+        (false, true) => media.entered(hit.material),
+        (true, false) => media.left(hit.material),
+        _ => *media,
+    }
+}
+
+fn goes_up(hit: &SurfaceHit, direction: DVec3) -> bool {
+    direction.dot(hit.normal) > 0.0
+}

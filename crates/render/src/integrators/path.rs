@@ -1,0 +1,267 @@
+//! Path tracing: light that reaches the eye after any number of bounces. At every surface one light is chosen and asked, one ray
+//! goes on in a direction that the surface prefers; whatever both could have found is weighted so that the better one counts.
+//!
+//! # Parameters
+//! `max_depth` bounces, 0 showing only what shines and 1 adding direct light; `roulette_depth` from which on weak paths are ended
+//! by chance.
+//!
+//! # Example
+//! ```toml
+//! [integrator]
+//! type = "path"
+//! max_depth = 12
+//! ```
+//!
+//! # Limits
+//! Light that small or pointlike lamps throw through glass or off mirrors (caustics) is found only by rays that hit the lamp by
+//! chance: noise, and for points nothing at all. `ambient` lights, a stand-in for what `path` computes, are ignored.
+//!
+//! # References
+//! Kajiya 1986, "The Rendering Equation"; Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", sections 9.2
+//! (the power heuristic, with exponent 2) and 10.4 (Russian roulette); Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
+//! Traced Images".
+
+use super::{Integrator, LastVertex, PathState, RayKind, ShadowRay, StepOutput, crossing};
+use crate::observe::PathEnd;
+use crate::sampler::Sampler;
+use crate::scene::{Scene, SurfaceHit};
+use kirkas_geometry::hash::{combine, of_name};
+use kirkas_geometry::{DVec3, Vec3};
+use kirkas_optics::{Bsdf, Light, Lobe, LobeSet, Mode};
+use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+
+/// The table.
+pub const SPEC: TypeSpec = TypeSpec {
+    kind: Kind::Integrator,
+    name: "path",
+    doc: "Path tracing: all light, after any number of bounces.",
+    params: &[MAX_DEPTH, ROULETTE_DEPTH],
+};
+pub(super) const MAX_DEPTH: ParamSpec = ParamSpec::integer(
+    "max_depth",
+    1000,
+    (0.0, 1e6),
+    "Bounces between eye and lamp: 0 shows only what shines, 1 adds direct light.",
+)
+.unit("bounces");
+const ROULETTE_DEPTH: ParamSpec = ParamSpec::integer(
+    "roulette_depth",
+    4,
+    (0.0, 1e6),
+    "From this bounce on a path goes on only as probably as it still carries light; the survivors count more, so that nothing is lost on average.",
+)
+.unit("bounces");
+
+/// The integrator.
+#[derive(Clone, Debug)]
+pub struct Path {
+    max_depth: u32,
+    roulette_depth: u32,
+}
+
+impl Path {
+    /// From its parameters.
+    pub fn new(p: &Params) -> Self {
+        Path { max_depth: p.integer("max_depth") as u32, roulette_depth: p.integer("roulette_depth") as u32 }
+    }
+}
+
+impl Integrator for Path {
+    fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput) {
+        // What left the scene sees the background.
+        let Some(hit) = hit else {
+            self.escape(scene, path, out);
+            return;
+        };
+
+        // Weaken the path by the body it went through.
+        let mut path = *path;
+        path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
+
+        // Pass boundaries that another body covers.
+        if crossing::is_covered(scene, &path, hit) {
+            out.paths.extend(crossing::passed(&path, hit));
+            return;
+        }
+
+        // A surface that shines is seen.
+        let emitted = scene.emitted(&path.lanes, hit);
+        if !emitted.is_black() {
+            let weight = match (&path.last, scene.light_of(hit)) {
+                (Some(last), Some(light)) => {
+                    let pdf = scene.light_pdf(light, hit, last.position, f64::from(path.ray.time));
+                    last.weight(scene, light, pdf)
+                }
+                _ => 1.0,
+            };
+            out.contributions.push((path.throughput * emitted * weight, hit.emission_group));
+        }
+        if path.depth >= self.max_depth {
+            out.end = Some(PathEnd::Depth);
+            return;
+        }
+
+        // Ask a light, and go on.
+        let vertex = Vertex::new(scene, &path, hit);
+        if vertex.lobes.is_empty() {
+            out.end = Some(PathEnd::Absorbed);
+            return;
+        }
+        if vertex.lobes.intersects(LobeSet::NON_DELTA) {
+            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler));
+        }
+        match vertex.go_on(scene, &path, sampler) {
+            Some(next) => self.play_roulette(scene, next, sampler, out),
+            None => out.end = Some(PathEnd::Absorbed),
+        }
+    }
+}
+
+impl Path {
+    fn escape(&self, scene: &Scene, path: &PathState, out: &mut StepOutput) {
+        let sky = scene.background.radiance(&path.lanes, path.ray.direction)
+            * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
+        if !sky.is_black() {
+            let weight = match (&path.last, scene.background_light) {
+                (Some(last), Some(light)) => {
+                    last.weight(scene, light, scene.background_pdf(path.ray.direction.as_dvec3()))
+                }
+                _ => 1.0,
+            };
+            out.contributions.push((path.throughput * sky * weight, scene.background_group));
+        }
+        out.end = Some(PathEnd::Escaped);
+    }
+
+    /// Send the path on, or end it by chance.
+    fn play_roulette(&self, scene: &Scene, mut next: PathState, sampler: &Sampler, out: &mut StepOutput) {
+        if next.depth >= self.roulette_depth {
+            let chance = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
+            if sampler.one(combine(next.branch, ROULETTE)) >= chance {
+                out.end = Some(PathEnd::Roulette);
+                return;
+            }
+            next.throughput *= 1.0 / chance;
+        }
+        out.paths.push(next);
+    }
+}
+
+/// Even where nothing is absorbed every path ends.
+const MOST_CHANCE: f32 = 0.95;
+
+impl LastVertex {
+    /// The weight of light that a ray found by itself which asking light number `light` would have found with density `pdf`.
+    fn weight(&self, scene: &Scene, light: u32, pdf: f32) -> f32 {
+        power_heuristic(self.pdf, pdf * scene.picker.probability(self.position, self.normal, light))
+    }
+}
+
+/// The weight of what was found with density `own` and could have been with density `other` (Veach 1997, equation 9.13).
+fn power_heuristic(own: f32, other: f32) -> f32 {
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+/// A surface that a path has reached, with all that is asked of it twice.
+struct Vertex<'a> {
+    hit: &'a SurfaceHit,
+    bsdf: Bsdf,
+    lobes: LobeSet,
+    wo: Vec3,
+    /// Of the side that light must come from; zero where it may come from both.
+    normal: DVec3,
+}
+
+impl<'a> Vertex<'a> {
+    fn new(scene: &Scene, path: &PathState, hit: &'a SurfaceHit) -> Self {
+        let bsdf = crossing::bsdf(scene, path, hit);
+        let lobes = bsdf.lobes();
+        let normal = match (lobes.intersects(LobeSet::TRANSMISSION), hit.is_front) {
+            (true, _) => DVec3::ZERO,
+            (false, true) => hit.normal,
+            (false, false) => -hit.normal,
+        };
+        Vertex { hit, bsdf, lobes, wo: hit.frame.to_local(-path.ray.direction.normalize()), normal }
+    }
+
+    /// One light, and what comes from it unless something is in the way.
+    fn ask_light(&self, scene: &Scene, path: &PathState, sampler: &Sampler) -> Option<ShadowRay> {
+        let hit = self.hit;
+        let u = if scene.lights.len() > 1 { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
+        let (number, probability) = scene.picker.pick(hit.position, self.normal, u)?;
+        let light = &scene.lights[number as usize];
+        let u = sampler.pair(combine(path.branch, LIGHT));
+        let s = scene.sample_light(&path.lanes, light, hit.position, f64::from(path.ray.time), u)?;
+        let wi = hit.frame.to_local(s.direction.as_vec3());
+        if !crossing::agrees(hit, s.direction, wi.z) {
+            return None;
+        }
+        let f = self.bsdf.eval(self.wo, wi, LobeSet::NON_DELTA, Mode::Radiance);
+        if f.is_black() || s.light.is_black() {
+            return None;
+        }
+        // Where no ray can hit the light, this is the only way to it.
+        let weight = match s.pdf > 0.0 {
+            true => power_heuristic(probability * s.pdf, self.bsdf.pdf(self.wo, wi, LobeSet::ALL, Mode::Radiance)),
+            false => 1.0,
+        };
+        let media = crossing::media_towards(scene, &path.media, hit, s.direction);
+        let clear = scene.clearness(&path.lanes, &media, s.distance(hit.position));
+        let light_found = path.throughput * f * s.light * clear * (wi.z.abs() * weight / probability);
+        (!light_found.is_black()).then(|| ShadowRay {
+            ray: hit.shadow_ray(&s, &path.ray),
+            lanes: path.lanes,
+            light: light_found,
+            group: light.group,
+            branch: path.branch,
+            lamp: number,
+            is_filtered: false,
+            media,
+            passed: 0,
+        })
+    }
+
+    /// The path after this surface; `None` if the surface swallows it.
+    fn go_on(&self, scene: &Scene, path: &PathState, sampler: &Sampler) -> Option<PathState> {
+        let hit = self.hit;
+        let u_lobe = sampler.one(combine(path.branch, LOBE));
+        let u = sampler.pair(combine(path.branch, DIRECTION));
+        let s = self.bsdf.sample(self.wo, u_lobe, u, LobeSet::ALL, Mode::Radiance)?;
+        let throughput: Light = path.throughput * s.weight();
+        let direction = hit.frame.to_world(s.wi).as_dvec3().normalize();
+        // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.
+        if throughput.is_black() || !crossing::keeps_side(hit, direction, s.lobe) {
+            return None;
+        }
+        let last = LastVertex { position: hit.position, normal: self.normal, pdf: s.pdf };
+        Some(PathState {
+            lanes: path.lanes,
+            ray: hit.ray_towards(direction, &path.ray),
+            throughput,
+            depth: path.depth + 1,
+            kind: kind_of(s.lobe),
+            branch: combine(path.branch, BOUNCE),
+            media: crossing::media_towards(scene, &path.media, hit, direction),
+            passed: 0,
+            travelled: 0.0,
+            last: (!s.lobe.is_delta()).then_some(last),
+        })
+    }
+}
+
+fn kind_of(lobe: Lobe) -> RayKind {
+    match lobe {
+        Lobe::DeltaReflection => RayKind::Reflected,
+        Lobe::DeltaTransmission => RayKind::Refracted,
+        Lobe::GlossyReflection | Lobe::GlossyTransmission => RayKind::Glossy,
+        Lobe::DiffuseReflection | Lobe::DiffuseTransmission => RayKind::Diffuse,
+    }
+}
+
+const PICK: u64 = of_name("pick");
+const LIGHT: u64 = of_name("light");
+const LOBE: u64 = of_name("lobe");
+const DIRECTION: u64 = of_name("direction");
+const ROULETTE: u64 = of_name("roulette");
+const BOUNCE: u64 = of_name("bounce");

@@ -1,0 +1,174 @@
+//! Path tracing written as plainly as can be: one ray at a time, in one loop. The readable twin of `path`, and its test.
+//!
+//! # Parameters
+//! `max_depth` bounces, as for `path`; `next_event`: ask a light at every surface (else only those that no ray can hit).
+//!
+//! # Example
+//! ```toml
+//! [integrator]
+//! type = "path_simple"
+//! next_event = false
+//! ```
+//!
+//! # Limits
+//! Slow and noisy: lights are chosen evenly, nothing is weighted, and rays do not travel in flocks.
+//!
+//! # References
+//! Kajiya 1986, "The Rendering Equation".
+
+use super::path::MAX_DEPTH;
+use super::{Integrator, PathState, StepOutput, crossing};
+use crate::sampler::Sampler;
+use crate::scene::{AlphaFilter, Scene, SurfaceHit};
+use kirkas_accel::Query;
+use kirkas_geometry::Ray;
+use kirkas_geometry::hash::{combine, of_name};
+use kirkas_optics::{LobeSet, Mode};
+use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+
+/// The table.
+pub const SPEC: TypeSpec = TypeSpec {
+    kind: Kind::Integrator,
+    name: "path_simple",
+    doc: "Path tracing, as plain as can be: the test of `path`.",
+    params: &[
+        MAX_DEPTH,
+        ParamSpec::bool("next_event", true, "Ask a light at every surface, not only those that no ray can hit."),
+    ],
+};
+
+/// The integrator.
+#[derive(Clone, Debug)]
+pub struct PathSimple {
+    max_depth: u32,
+    next_event: bool,
+}
+
+impl PathSimple {
+    /// From its parameters.
+    pub fn new(p: &Params) -> Self {
+        PathSimple { max_depth: p.integer("max_depth") as u32, next_event: p.bool("next_event") }
+    }
+}
+
+/// From this bounce on a path survives with [`SURVIVAL`].
+const ROULETTE_DEPTH: u32 = 6;
+const SURVIVAL: f32 = 0.9;
+
+impl Integrator for PathSimple {
+    fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput) {
+        let mut path = *path;
+        let mut hit = hit.copied();
+        let mut was_asked = false; // whether the last surface has asked lights already
+        loop {
+            // Add what shines at the ray's end, unless it was asked for.
+            let Some(surface) = &hit else {
+                if !(was_asked && self.next_event) {
+                    let sky = scene.background.radiance(&path.lanes, path.ray.direction);
+                    let clear = scene.clearness(&path.lanes, &path.media, f64::INFINITY);
+                    out.contributions.push((path.throughput * sky * clear, scene.background_group));
+                }
+                return;
+            };
+            path.throughput *=
+                scene.clearness(&path.lanes, &path.media, f64::from(surface.t * path.ray.direction.length()));
+            if crossing::is_covered(scene, &path, surface) {
+                let Some(behind) = crossing::passed(&path, surface) else { return };
+                path = behind;
+                hit = closest(scene, &path, sampler, out);
+                continue;
+            }
+            if !(was_asked && self.next_event && scene.light_of(surface).is_some()) {
+                out.contributions.push((path.throughput * scene.emitted(&path.lanes, surface), surface.emission_group));
+            }
+            if path.depth >= self.max_depth {
+                return;
+            }
+
+            // Ask one light, each as likely as any other.
+            let bsdf = crossing::bsdf(scene, &path, surface);
+            let wo = surface.frame.to_local(-path.ray.direction.normalize());
+            self.ask_light(scene, &path, sampler, surface, &bsdf, wo, out);
+
+            // Go on in a random direction.
+            let u = sampler.pair(combine(path.branch, DIRECTION));
+            let u_lobe = sampler.one(combine(path.branch, LOBE));
+            let Some(s) = bsdf.sample(wo, u_lobe, u, LobeSet::ALL, Mode::Radiance) else { return };
+            let direction = surface.frame.to_world(s.wi).as_dvec3().normalize();
+            if !crossing::keeps_side(surface, direction, s.lobe) {
+                return;
+            }
+            path.throughput *= s.weight();
+            path.depth += 1;
+            path.branch = combine(path.branch, BOUNCE);
+            path.media = crossing::media_towards(scene, &path.media, surface, direction);
+            path.ray = surface.ray_towards(direction, &path.ray);
+            path.passed = 0;
+            was_asked = !s.lobe.is_delta();
+
+            // End long paths by chance.
+            if path.depth >= ROULETTE_DEPTH {
+                if sampler.one(combine(path.branch, ROULETTE)) >= SURVIVAL {
+                    return;
+                }
+                path.throughput *= 1.0 / SURVIVAL;
+            }
+            hit = closest(scene, &path, sampler, out);
+        }
+    }
+}
+
+impl PathSimple {
+    fn ask_light(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        surface: &SurfaceHit,
+        bsdf: &kirkas_optics::Bsdf,
+        wo: kirkas_geometry::Vec3,
+        out: &mut StepOutput,
+    ) {
+        let count = scene.lights.len();
+        let number = (sampler.one(combine(path.branch, PICK)) * count as f32) as usize;
+        let Some(light) = scene.lights.get(number) else { return };
+        let u = sampler.pair(combine(path.branch, LIGHT));
+        let sample = scene.sample_light(&path.lanes, light, surface.position, f64::from(path.ray.time), u);
+        let Some(s) = sample.filter(|s| self.next_event || s.pdf == 0.0) else { return };
+        let wi = surface.frame.to_local(s.direction.as_vec3());
+        let f = bsdf.eval(wo, wi, LobeSet::NON_DELTA, Mode::Radiance);
+        if f.is_black() || !crossing::agrees(surface, s.direction, wi.z) {
+            return;
+        }
+        let media = crossing::media_towards(scene, &path.media, surface, s.direction);
+        let clear = scene.clearness(&path.lanes, &media, s.distance(surface.position));
+        if is_free(scene, &surface.shadow_ray(&s, &path.ray), path, sampler, out) {
+            let found = path.throughput * f * s.light * clear * (wi.z.abs() * count as f32);
+            out.contributions.push((found, light.group));
+        }
+    }
+}
+
+/// What the path's ray hits.
+fn closest(scene: &Scene, path: &PathState, sampler: &Sampler, out: &mut StepOutput) -> Option<SurfaceHit> {
+    let keys = [combine(sampler.key(), path.branch)];
+    let filter = AlphaFilter { scene, keys: &keys };
+    out.counted.diffuse_rays += 1;
+    let hit = scene.accel.closest_hit(&path.ray, Query::filtered(&filter), 0, &mut out.counted.search)?;
+    Some(scene.surface(&path.ray, &hit))
+}
+
+/// True when nothing is in the ray's way.
+fn is_free(scene: &Scene, ray: &Ray, path: &PathState, sampler: &Sampler, out: &mut StepOutput) -> bool {
+    let keys = [AlphaFilter::shadow_key(sampler, path.branch)];
+    let filter = AlphaFilter { scene, keys: &keys };
+    out.counted.shadow_rays += 1;
+    scene.accel.closest_hit(ray, Query::filtered(&filter), 0, &mut out.counted.search).is_none()
+}
+
+const PICK: u64 = of_name("pick");
+const LIGHT: u64 = of_name("light");
+const LOBE: u64 = of_name("lobe");
+const DIRECTION: u64 = of_name("direction");
+const ROULETTE: u64 = of_name("roulette");
+const BOUNCE: u64 = of_name("bounce");

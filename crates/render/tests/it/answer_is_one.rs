@@ -1,0 +1,101 @@
+//! Scenes whose radiance is 1 by construction, for every sampler, camera, integrator and accelerator that is listed.
+
+use crate::support::{expose, noisy, prepared};
+use kirkas_render::camera::CAMERAS;
+use kirkas_render::catalog::ACCELERATORS;
+use kirkas_render::integrators::INTEGRATORS;
+use kirkas_render::sampler::SAMPLERS;
+
+/// Integrators that follow no light from one matte surface to another, nor from the sky to a matte surface.
+const MIRRORS_ONLY: [&str; 1] = ["whitted"];
+
+struct Scene {
+    name: &'static str,
+    body: &'static str,
+    /// Light bounces off matte or rough surfaces.
+    is_matte: bool,
+}
+
+const SCENES: [Scene; 7] = [
+    Scene { name: "nothing before a white sky", body: "[background]\ncolor = 1\n", is_matte: false },
+    Scene {
+        name: "inside a lamp",
+        body: "[materials.lamp]\ntype = \"emitter\"\ntwo_sided = true\n[objects.room]\ntype = \"sphere\"\nradius = 20\nmaterial = \"lamp\"\n",
+        is_matte: false,
+    },
+    Scene {
+        name: "a perfect mirror",
+        body: "[background]\ncolor = 1\n[materials.silver]\ntype = \"mirror\"\nreflectance = 1\n[objects.ring]\ntype = \"torus\"\nmaterial = \"silver\"\n",
+        is_matte: false,
+    },
+    Scene {
+        name: "clear glass",
+        body: "[background]\ncolor = 1\n[materials.glass]\ntype = \"dielectric\"\n[objects.ball]\ntype = \"sphere\"\nmaterial = \"glass\"\n",
+        is_matte: false,
+    },
+    Scene {
+        name: "perfect white under the sky",
+        body: "[background]\ncolor = 1\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n[objects.ring]\ntype = \"torus\"\nmaterial = \"white\"\n",
+        is_matte: true,
+    },
+    // rho / (1 - rho) I / (pi R^2) = 1 with rho = 1/2 and R = 20.
+    Scene {
+        name: "a room around a point",
+        body: "[materials.half]\ntype = \"lambert\"\nreflectance = 0.5\n[objects.room]\ntype = \"sphere\"\nradius = 20\nmaterial = \"half\"\n[lights.bulb]\ntype = \"point\"\nunit = \"W/sr\"\nintensity = 1256.6370614359173\n",
+        is_matte: true,
+    },
+    // M = rho (F L + (1 - F) M) = 1 with rho = 1/2 and F = (1/4)^2.
+    Scene {
+        name: "a room around a lamp",
+        body: "[materials.half]\ntype = \"lambert\"\nreflectance = 0.5\n[objects.room]\ntype = \"sphere\"\nradius = 20\nmaterial = \"half\"\n[materials.lamp]\ntype = \"emitter\"\nintensity = 17\n[objects.lamp]\ntype = \"sphere\"\nradius = 5\nmaterial = \"lamp\"\nvisible = false\n",
+        is_matte: true,
+    },
+];
+
+#[track_caller]
+fn check(scene: &Scene, integrator: &str, sampler: &str, camera: &str, accelerator: &str) {
+    if scene.is_matte && MIRRORS_ONLY.contains(&integrator) {
+        return;
+    }
+    let depth = if integrator == "whitted" { "max_depth = 40\nmin_contribution = 0\n" } else { "" };
+    let p = prepared(&format!(
+        "[integrator]\ntype = \"{integrator}\"\n{depth}[sampler]\ntype = \"{sampler}\"\nsamples = 64\n[accelerator]\ntype = \"{accelerator}\"\n\
+         [film]\nwidth = 4\nheight = 4\n[cameras.eye]\ntype = \"{camera}\"\nposition = [0.3, 1.2, 2.2]\nlook_at = [0, 0, 0]\n{}",
+        scene.body
+    ));
+    let (film, _) = expose(&p, 0..64);
+    let (mean, variance) = noisy(&film);
+    for (m, v) in mean.iter().zip(&variance) {
+        // Some thousand values: six standard errors, and what a tree of 40 bounces cuts off.
+        let slack = 6.0 * v.sqrt() + 2e-3;
+        assert!((m - 1.0).abs() < slack, "{}: {m} by {integrator} {sampler} {camera} {accelerator}", scene.name);
+    }
+    // All pixels together; the channels of each share their noise.
+    let (all, pixels) = (mean.iter().sum::<f64>() / mean.len() as f64, mean.len() as f64 / 3.0);
+    let slack = 5.0 * variance.iter().step_by(3).sum::<f64>().sqrt() / pixels + 1e-3;
+    assert!((all - 1.0).abs() < slack, "{}: {all} by {integrator} {sampler} {camera} {accelerator}", scene.name);
+}
+
+#[test]
+fn the_answer_is_one_for_every_integrator_sampler_and_camera() {
+    for scene in &SCENES {
+        for integrator in INTEGRATORS {
+            for sampler in SAMPLERS {
+                for camera in CAMERAS {
+                    check(scene, integrator.spec.name, sampler.name, camera.name, "bvh8");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_answer_is_one_for_every_accelerator() {
+    for scene in &SCENES {
+        for integrator in INTEGRATORS {
+            for (accelerator, _) in ACCELERATORS {
+                check(scene, integrator.spec.name, "sobol", "perspective", accelerator.name);
+            }
+        }
+    }
+}
