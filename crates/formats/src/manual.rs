@@ -124,14 +124,14 @@ look at the whole image and at all samples so far, so `--crop`, `--samples` and 
 `sample_count` shows where the samples went. What did not reach E is said at the end and in `--stats`.
 
 The samples that decide are also those that are shown, and that has a price: where none has found a light yet, nothing tells that
-it is there. Measured over 40 seeds with independent samples (`cargo xtask bias` takes 1000):
+it is there. Measured with independent samples, with twice the standard error (`cargo xtask bias` measures it anew):
 
-| light found by | where | E | `min_samples` | bias |
-|---|---|---|---|---|
-| 1 sample in 100 | one pixel | 0.05 | 64 | -29 % +- 4 % |
-| 1 sample in 500 | one pixel | 0.05 | 64 | -43 % +- 3 % |
-| 1 sample in 500 | one pixel | 0.05 | 1024 | -9 % +- 4 % |
-| 1 sample in 500 | all pixels | 0.3 | 64 | 2 % +- 3 % |
+| light found by | where | E | `min_samples` | seeds | bias |
+|---|---|---|---|---|---|
+| 1 sample in 100 | one pixel | 0.05 | 64 | 1000 | -27.8 % +- 1.6 % |
+| 1 sample in 500 | one pixel | 0.05 | 64 | 1000 | -43.7 % +- 1.2 % |
+| 1 sample in 500 | one pixel | 0.05 | 1024 | 50 | -10 % +- 7 % |
+| 1 sample in 500 | all pixels | 0.3 | 64 | 50 | -0.1 % +- 0.4 % |
 
 The mean of a pixel is off by that much on the average. Smooth light, and rare light that falls on many pixels (caustics, small
 lamps), are not touched; a single bright pixel in still surroundings is. Raise `min_samples` or give a plain `--spp` where that

@@ -113,7 +113,7 @@ fn the_clamp_holds_every_contribution_keeps_its_colour_and_is_said_aloud() {
     let clamped = prepared(&LAMPS.replace("light_groups = true", "filter = \"box\"\nclamp = 0.25"));
     assert!(clamped.warnings.iter().any(|w| w.code == "firefly-clamp"));
 
-    let source = Source(|_| Light([8.0, 4.0, 0.0, 0.0]));
+    let source = Source(|_| Light([0.5, 0.25, 0.0, 0.0]));
     let film = with_integrator(&clamped, &source, 4);
     assert_eq!(film.tiles[0].mean(0), [0.25, 0.125, 0.0]);
     let source = Source(|_| Light([0.2, 0.1, 0.25, 0.0]));
