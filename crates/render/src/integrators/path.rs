@@ -3,7 +3,7 @@
 //!
 //! # Parameters
 //! `max_depth` bounces, 0 showing only what shines and 1 adding direct light; `roulette_depth` from which on weak paths are ended
-//! by chance.
+//! by chance; `light_selection`: how the one light is chosen.
 //!
 //! # Example
 //! ```toml
@@ -18,10 +18,12 @@
 //!
 //! # References
 //! Kajiya 1986, "The Rendering Equation"; Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", sections 9.2
-//! (the power heuristic, with exponent 2) and 10.4 (Russian roulette); Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
+//! (the power heuristic, with exponent 2) and 10.4 (Russian roulette); Conty Estevez & Kulla 2018, "Importance Sampling of Many
+//! Lights with Adaptive Tree Splitting"; Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
 //! Traced Images".
 
 use super::{Integrator, LastVertex, PathState, RayKind, ShadowRay, StepOutput, crossing};
+use crate::lights::pick::SELECTION;
 use crate::observe::PathEnd;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -35,7 +37,7 @@ pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Integrator,
     name: "path",
     doc: "Path tracing: all light, after any number of bounces.",
-    params: &[MAX_DEPTH, ROULETTE_DEPTH],
+    params: &[MAX_DEPTH, ROULETTE_DEPTH, SELECTION],
 };
 pub(super) const MAX_DEPTH: ParamSpec = ParamSpec::integer(
     "max_depth",

@@ -13,6 +13,7 @@ mod films;
 mod filters;
 mod hostile;
 mod light_sampling;
+mod light_selection;
 mod manuals;
 mod numbers;
 mod observer;
