@@ -9,6 +9,7 @@
 //! | `kirkas.files` | one line per file: its SHA-256 and its path from the root folder |
 //! | `kirkas.overrides` | one line per value that the command line set |
 //! | `kirkas.seed` | which of all pictures |
+//! | `kirkas.color` | how light was carried: `rgb` or `spectral` |
 //! | `kirkas.frame` | which frame of a film, if it is one |
 //! | `kirkas.crop` | which part of the whole image, if not all: `x0,y0,x1,y1` |
 //! | `kirkas.samples` | which samples of each pixel, such as `0..64` |
@@ -38,6 +39,7 @@ const MUST_AGREE: [(&str, &str); 7] = [
     ("scene_hash", "the scene"),
     ("overrides", "the overrides"),
     ("seed", "the seed"),
+    ("color", "how colour is carried"),
     ("frame", "the frame"),
     ("relight", "the mix of lights"),
     ("strata", "the number of samples that the sampler was made for"),

@@ -223,6 +223,7 @@ fn takes(ty: ParamType) -> String {
         ParamType::Vector2 => "`[x, y]`".into(),
         ParamType::Vector => "`[x, y, z]`".into(),
         ParamType::Color => "colour".into(),
+        ParamType::Index => "number or table".into(),
         ParamType::ColorTexture => "colour or texture".into(),
         ParamType::NumberTexture => "number or texture".into(),
         ParamType::Reference(kind) => format!("name of {}", article(kind.singular())),

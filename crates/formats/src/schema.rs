@@ -36,6 +36,8 @@ pub fn json_schema(catalog: &Catalog) -> String {
     }
     definitions.push(("transform".into(), transform()));
     definitions.push(("motion".into(), motion()));
+    definitions.push(("wave_color".into(), wave_color()));
+    definitions.push(("wave_index".into(), wave_index()));
     Json::map([
         ("$schema", Json::text("https://json-schema.org/draft/2020-12/schema")),
         ("title", Json::text("Kirkas scene")),
@@ -113,10 +115,15 @@ fn value(row: &ParamSpec) -> Json {
         ParamType::Choice(words) => Json::map([("enum", Json::texts(words.iter().copied()))]),
         ParamType::Vector2 => list(number(), Some(2)),
         ParamType::Vector => list(number(), Some(3)),
-        ParamType::Color => any_of(color()),
+        ParamType::Color => {
+            let [grey, rgb, hex] = color();
+            any_of([grey, rgb, hex, reference("wave_color")])
+        }
+        ParamType::Index => any_of([number(), reference("wave_index")]),
         ParamType::ColorTexture => {
             let [grey, rgb, _] = color();
-            any_of([grey, rgb, described(of_type("string"), "\"#rrggbb\", or the name of a texture")])
+            let named = described(of_type("string"), "\"#rrggbb\", or the name of a texture");
+            any_of([grey, rgb, named, reference("wave_color")])
         }
         ParamType::NumberTexture => any_of([number(), described(of_type("string"), "the name of a texture")]),
         ParamType::Transform => reference("transform"),
@@ -131,6 +138,38 @@ fn value(row: &ParamSpec) -> Json {
             None,
         ),
     }
+}
+
+/// As `kirkas_scene::waves` reads colours.
+fn wave_color() -> Json {
+    let entry = |name: &str, value: Json, text: &str| described(only(name, value), text);
+    any_of([
+        entry("blackbody", ranged("number", (100.0, 1e6)), "temperature in K"),
+        entry("illuminant", of_type("string"), "CIE illuminant by name"),
+        entry("spectrum", of_type("string"), "file of two columns, wavelength in nm and value"),
+    ])
+}
+
+/// As `kirkas_scene::waves` reads refractive indices.
+fn wave_index() -> Json {
+    let numbers = || list(of_type("number"), None);
+    any_of([
+        described(only("material", of_type("string")), "a material by name"),
+        described(only("file", of_type("string")), "a .yml file of refractiveindex.info"),
+        described(only("cauchy", numbers()), "[A, B, ...] of n = A + B / l^2 + ..., l in micrometres"),
+        described(
+            only("sellmeier", numbers()),
+            "[B1, .., C1, ..] of n^2 = 1 + B1 l^2 / (l^2 - C1) + ..., l in micrometres",
+        ),
+    ])
+}
+
+/// A table with this one entry.
+fn only(name: &str, value: Json) -> Json {
+    of_type("object")
+        .with("properties", Json::map([(name, value)]))
+        .with("required", Json::texts([name]))
+        .with("additionalProperties", Json::Bool(false))
 }
 
 /// As `kirkas_scene::transforms` reads it.

@@ -45,6 +45,22 @@ pub fn dielectric(cos_o: f32, eta_o: f32, eta_i: f32) -> f32 {
     0.5 * (s + p)
 }
 
+/// Reflectance of a metal for unpolarised light from vacuum, for its complex index `n + i k` (Born & Wolf, section 14.2); with
+/// `k = 0` that of a dielectric.
+pub fn conductor(cos_o: f32, n: f32, k: f32) -> f32 {
+    let (n, k, cos) = (f64::from(n), f64::from(k), f64::from(cos_o));
+    let (cos2, sin2) = (cos * cos, (1.0 - cos) * (1.0 + cos));
+    // a + i b is the root of (n + i k)^2 - sin^2.
+    let real = n * n - k * k - sin2;
+    let size = (real * real + 4.0 * n * n * k * k).sqrt();
+    let a = (0.5 * (size + real)).max(0.0).sqrt();
+    let s = (size + cos2 - 2.0 * a * cos) / (size + cos2 + 2.0 * a * cos);
+    let turned = size * cos2 + sin2 * sin2;
+    let mixed = 2.0 * a * cos * sin2;
+    let p = s * (turned - mixed) / (turned + mixed);
+    (0.5 * (s + p)) as f32
+}
+
 /// Schlick's approximation of [`dielectric`]: the cosine is the one on the thinner side, so that it stays continuous up to
 /// total internal reflection; matched indices reflect nothing.
 ///

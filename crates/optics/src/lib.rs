@@ -6,6 +6,7 @@
 
 pub mod bsdf;
 pub mod fresnel;
+pub mod index;
 pub mod lanes;
 pub mod light;
 pub mod medium;
@@ -13,7 +14,8 @@ pub mod microfacet;
 pub mod spectrum;
 
 pub use bsdf::{Branches, Bsdf, BsdfModel, BsdfSample, Interface, Lobe, LobeSet, Mode, SPECS};
-pub use lanes::Lanes;
+pub use index::Index;
+pub use lanes::{ColorMode, FilmWeights, Lanes};
 pub use light::Light;
 pub use medium::Medium;
-pub use spectrum::{Palette, Spectrum};
+pub use spectrum::{Paint, Palette, Spectrum};

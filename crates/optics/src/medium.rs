@@ -1,5 +1,6 @@
 //! What fills a closed surface: refractive index, priority among overlapping fillings, absorption.
 
+use crate::index::Index;
 use crate::{Light, Spectrum};
 use kirkas_geometry::elementary::exp_f32;
 
@@ -7,7 +8,7 @@ use kirkas_geometry::elementary::exp_f32;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
     /// Refractive index.
-    pub ior: f32,
+    pub ior: Index,
     /// Where fillings overlap, the highest priority wins (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
     /// Traced Images").
     pub priority: i32,
@@ -17,7 +18,7 @@ pub struct Medium {
 
 impl Medium {
     /// Vacuum, and near enough air.
-    pub const VACUUM: Self = Medium { ior: 1.0, priority: i32::MIN, absorption: Spectrum::BLACK };
+    pub const VACUUM: Self = Medium { ior: Index::Even(1.0), priority: i32::MIN, absorption: Spectrum::BLACK };
 }
 
 /// What is left of light after `distance`: `exp(-absorption distance)` (Beer & Lambert).

@@ -19,8 +19,9 @@ use crate::placement::{PlacedPart, Placement, place_objects};
 use crate::sampler::{SamplerKind, frame_seed};
 use crate::scene::{PRIMARY, PartInfo, Scene};
 use crate::textures::Textures;
+use crate::wave_files::palette;
 use kirkas_accel::{Accel, AccelKind, Executor, Geometry, Instance, SceneGeometry};
-use kirkas_optics::Palette;
+use kirkas_optics::ColorMode;
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
 use std::sync::Arc;
@@ -235,7 +236,8 @@ fn compile(
     (resolution, time): ((u32, u32), Option<f64>),
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Scene, Vec<Diagnostic>> {
-    let palette = Palette::RGB;
+    let color = singles.params(Kind::Film).text("color").and_then(ColorMode::from_name).unwrap_or_default();
+    let palette = palette(d, catalog, assets, color)?;
 
     // Textures and materials, by name.
     let textures = Textures::compile(d, catalog, assets)?;
@@ -345,6 +347,8 @@ fn compile(
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
     let scene = Scene {
+        color,
+        disperses: materials.iter().any(|m| m.medium.as_ref().is_some_and(|x| x.ior.is_dispersive())),
         accel,
         world: infos(world),
         aggregates: aggregates.into_iter().map(infos).collect(),
@@ -359,7 +363,6 @@ fn compile(
         background_group,
         camera,
         camera_media: MediumStack::EMPTY,
-        camera_gain: 1.0,
         groups: groups.0,
         object_names,
     };

@@ -12,14 +12,14 @@ use crate::statistics::Statistics;
 use kirkas_accel::{Hit, Query};
 use kirkas_geometry::Ray;
 use kirkas_geometry::hash::combine;
-use kirkas_optics::{Lanes, Light};
+use kirkas_optics::{FilmWeights, Light};
 
 /// One sample under way.
 struct Slot {
     id: SampleId,
     pixel: usize,
     sampler: Sampler,
-    lanes: Lanes,
+    film_weights: FilmWeights,
     /// The filter's weight.
     weight: f32,
     /// Rays that may still bring light.
@@ -124,6 +124,7 @@ impl<'a, O: Observer> Flock<'a, O> {
     fn launch(&mut self, pixel: usize, id: SampleId) {
         let sampler = self.renderer.sampler(id);
         let start = self.renderer.camera_path(&sampler, id);
+        let film_weights = start.path.lanes.film_weights();
         let planes = self.renderer.planes;
         let new = |mut sums: Vec<[i128; 3]>| {
             sums.clear();
@@ -132,7 +133,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 id,
                 pixel,
                 sampler,
-                lanes: start.path.lanes,
+                film_weights,
                 weight: start.weight,
                 pending: 1,
                 sums,
@@ -290,7 +291,7 @@ const DONE: usize = usize::MAX;
 
 /// Round a contribution once and add it to its sample.
 fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64, light: Light, group: u32) {
-    let rgb = clamped(slot.lanes.to_film(light), r.clamp);
+    let rgb = clamped(slot.film_weights.apply(light), r.clamp);
     let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
     let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
         slot.is_invalid = true;

@@ -54,10 +54,6 @@ impl Scene {
         let middle = (f64::from(resolution.0) / 2.0, f64::from(resolution.1) / 2.0);
         let sample = CameraSample { film: middle, lens: (0.5, 0.5), time: self.camera.shutter().0 };
         self.camera_media = bodies_around(&self, &self.camera.ray(&sample, resolution));
-        self.camera_gain = match self.ruling(&self.camera_media) {
-            Some(body) => 1.0 / self.materials[body as usize].radiance_gain,
-            None => 1.0,
-        };
         self
     }
 }

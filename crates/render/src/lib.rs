@@ -24,6 +24,7 @@ pub mod scene;
 pub mod shapes;
 pub mod statistics;
 pub mod textures;
+mod wave_files;
 
 pub use catalog::catalog;
 pub use compile_scene::{Options, Prepared, prepare};

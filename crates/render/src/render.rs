@@ -11,7 +11,7 @@ use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{PRIMARY, Scene, SurfaceHit};
 use crate::statistics::Statistics;
 use kirkas_geometry::hash::of_name;
-use kirkas_optics::Lanes;
+use kirkas_optics::{ColorMode, Lanes};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -173,11 +173,14 @@ impl Renderer<'_> {
         };
         let mut ray = camera.ray(&sample, self.resolution);
         ray.mask = PRIMARY;
-        let lanes = Lanes::RGB;
+        let lanes = match self.scene.color {
+            ColorMode::Rgb if !self.scene.disperses => Lanes::RGB,
+            mode => mode.lanes(sampler.one(WAVELENGTH)),
+        };
         let path = PathState {
             ray,
             lanes,
-            throughput: lanes.one() * self.scene.camera_gain,
+            throughput: lanes.one() * self.scene.camera_gain(&lanes),
             depth: 0,
             kind: RayKind::Camera,
             branch: 0,
@@ -229,6 +232,7 @@ fn even_bits(n: u64) -> u32 {
 const FILTER: u64 = of_name("filter");
 const LENS: u64 = of_name("lens");
 const TIME: u64 = of_name("time");
+const WAVELENGTH: u64 = of_name("wavelength");
 
 #[cfg(test)]
 mod tests {

@@ -15,7 +15,7 @@ use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
 use kirkas_optics::medium::transmittance;
-use kirkas_optics::{Bsdf, Interface, Lanes, Light, Medium, Spectrum};
+use kirkas_optics::{Bsdf, ColorMode, Index, Interface, Lanes, Light, Medium, Spectrum};
 use std::sync::Arc;
 
 /// What is known of one geometry of the accelerator.
@@ -62,6 +62,10 @@ pub const SECONDARY: u32 = 2;
 
 /// A scene, ready to be rendered.
 pub struct Scene {
+    /// How paths carry colour.
+    pub color: ColorMode,
+    /// True when some boundary refracts lanes differently.
+    pub disperses: bool,
     /// Finds hits.
     pub accel: Accel,
     /// Per geometry of the world.
@@ -90,8 +94,6 @@ pub struct Scene {
     pub camera: Camera,
     /// Bodies that the camera is inside of.
     pub camera_media: MediumStack,
-    /// What camera rays start with: 1, or 1 / n^2 inside a body, where all radiance is n^2 times brighter.
-    pub camera_gain: f32,
     /// Names of light groups.
     pub groups: Vec<String>,
     /// Names of objects.
@@ -159,6 +161,24 @@ impl Scene {
             NO_INSTANCE => &self.world[hit.geometry as usize],
             i => &self.aggregates[self.instances[i as usize].aggregate][hit.geometry as usize],
         }
+    }
+
+    /// What camera rays start with: 1, or 1 / n^2 inside a body, where all radiance is n^2 times brighter.
+    pub fn camera_gain(&self, lanes: &Lanes) -> Light {
+        match self.ruling(&self.camera_media) {
+            Some(body) => self.materials[body as usize].radiance_gain(lanes).map(|gain| 1.0 / gain),
+            None => Light::splat(1.0),
+        }
+    }
+
+    /// The boundary at a hit of a path that is inside of `media`.
+    pub fn interface(&self, lanes: &Lanes, media: &MediumStack, hit: &SurfaceHit) -> Interface {
+        let Some(inside) = &self.material(hit).medium else { return Interface::VACUUM };
+        let others = if hit.is_front { *media } else { media.left(hit.material) };
+        let outside = self.body_of(&others).map_or(&Index::Even(1.0), |m| &m.ior);
+        // A body that was never entered (its boundary touches another's) is left without an event.
+        let is_known = hit.is_front || media.materials().contains(&hit.material);
+        Interface::between(lanes, outside, if is_known { &inside.ior } else { outside })
     }
 
     /// Everything shading needs at a hit.
@@ -299,9 +319,9 @@ impl Scene {
         media.materials().iter().copied().reduce(|best, m| if priority(m) >= priority(best) { m } else { best })
     }
 
-    /// How much brighter radiance is in the body that rules in `media`: its index squared.
+    /// How much brighter radiance is in the body that rules in `media`: its index squared, in green light.
     pub fn gain(&self, media: &MediumStack) -> f32 {
-        self.ruling(media).map_or(1.0, |m| self.materials[m as usize].radiance_gain)
+        self.ruling(media).map_or(1.0, |m| self.materials[m as usize].radiance_gain(&Lanes::RGB)[1])
     }
 
     /// True when the boundary of `material` lies inside a body of higher rank and is not there (Schmidt & Budge 2002).

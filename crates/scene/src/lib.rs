@@ -13,6 +13,7 @@ pub mod spec;
 pub mod transforms;
 pub mod validate;
 pub mod value;
+pub mod waves;
 
 pub use assets::{Assets, MeshData, MeshPart};
 pub use description::{Description, Entity, Kind};

@@ -24,6 +24,8 @@ pub enum ParamType {
     Color,
     /// A colour, or the name of a texture.
     ColorTexture,
+    /// A refractive index: a number, or by wavelength: see [`crate::waves`].
+    Index,
     /// A number, or the name of a texture (its mean of r, g, b).
     NumberTexture,
     /// The name of another entity.

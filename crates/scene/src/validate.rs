@@ -3,6 +3,7 @@
 use crate::diagnostic::unknown_name;
 use crate::params::read_color;
 use crate::transforms::{read_motion, read_transform};
+use crate::waves;
 use crate::{
     Catalog, Description, Diagnostic, Entity, Fallback, Kind, Name, Node, ParamSpec, ParamType, TypeSpec, Value,
 };
@@ -86,6 +87,11 @@ fn check_value(d: &Description, row: &ParamSpec, name: &Name, node: &Node, found
         ParamType::Text | ParamType::Path if node.text().is_none() => found.push(mismatch("a text")),
         ParamType::Vector2 if !list_of(2) => found.push(mismatch("two numbers [x, y]")),
         ParamType::Vector if !list_of(3) => found.push(mismatch("three numbers [x, y, z]")),
+        ParamType::Color | ParamType::ColorTexture if waves::is_color(node) => {}
+        ParamType::Color | ParamType::ColorTexture if node.map().is_some() => found.push(mismatch(waves::COLORS)),
+        ParamType::Index if waves::is_index(node) => return,
+        ParamType::Index if node.map().is_some() => found.push(mismatch(waves::INDICES)),
+        ParamType::Index if node.number().is_none() => found.push(mismatch("a number or a table by wavelength")),
         ParamType::Color if read_color(&node.value).is_none() => {
             found.push(mismatch("a colour: [r, g, b], a grey, or \"#rrggbb\""))
         }

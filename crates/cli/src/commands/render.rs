@@ -59,6 +59,9 @@ pub struct Render {
     /// Threads to use [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Light as rgb, or spectral: as wavelengths
+    #[arg(long, value_name = "MODE")]
+    color: Option<String>,
     /// How rays find surfaces
     #[arg(long, value_name = "NAME")]
     accel: Option<String>,
@@ -183,6 +186,7 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
     header.set("error", prepared.target.map_or(String::new(), |t| t.error.to_string()));
     header.set("clamp", if prepared.clamp > 0.0 { prepared.clamp.to_string() } else { String::new() });
     header.set("strata", prepared.sampler.limit().map_or(String::new(), |n| n.to_string()));
+    header.set("color", prepared.scene.color.name());
     header.set("crop", args.crop.map_or(String::new(), |c| format!("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)));
     let job = Job {
         args,
@@ -259,6 +263,9 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     }
     if let Some(n) = args.seed {
         set.flag("--seed", "sampler.seed", n);
+    }
+    if let Some(name) = &args.color {
+        set.flag("--color", "film.color", name.as_str());
     }
     if let Some(name) = &args.camera {
         set.flag("--camera", "film.camera", name.as_str());

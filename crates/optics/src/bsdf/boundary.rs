@@ -1,21 +1,59 @@
 //! A boundary between two media: the delta pair of mirror and pane that several models share, and how light is split.
 
 use super::{Branches, BsdfSample, Lobe, LobeSet, Mode};
-use crate::{Light, fresnel};
+use crate::index::Index;
+use crate::{Lanes, Light, fresnel};
 use kirkas_geometry::Vec3;
 
 /// Refractive indices on both sides of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
-    /// On the +z side.
+    /// On the +z side, in the hero's lane.
     pub eta_above: f32,
-    /// On the -z side.
+    /// On the -z side, in the hero's lane.
     pub eta_below: f32,
+    /// Set where lanes refract differently.
+    spread: Option<Spread>,
+}
+
+/// Indices by lane. All lanes are reflected together; only the hero is refracted, and stands for the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spread {
+    above: Light,
+    below: Light,
+    /// See [`Lanes::hero_weight`].
+    hero_weight: Light,
 }
 
 impl Interface {
     /// Nothing on either side.
-    pub const VACUUM: Self = Interface { eta_above: 1.0, eta_below: 1.0 };
+    pub const VACUUM: Self = Interface::new(1.0, 1.0);
+
+    /// The same indices in every lane.
+    pub const fn new(eta_above: f32, eta_below: f32) -> Self {
+        Interface { eta_above, eta_below, spread: None }
+    }
+
+    /// For a path's lanes.
+    pub fn between(lanes: &Lanes, above: &Index, below: &Index) -> Self {
+        let disperses = (above.is_dispersive() || below.is_dispersive()) && !lanes.is_alone() && above != below;
+        let spread = disperses.then(|| Spread {
+            above: above.at(lanes),
+            below: below.at(lanes),
+            hero_weight: lanes.hero_weight(),
+        });
+        Interface { eta_above: above.of_hero(lanes), eta_below: below.of_hero(lanes), spread }
+    }
+
+    /// True when only the hero is refracted.
+    pub fn disperses(&self) -> bool {
+        self.spread.is_some()
+    }
+
+    /// What a refracted lane is multiplied by.
+    pub(crate) fn refracted_weight(&self) -> Light {
+        self.spread.map_or(Light::splat(1.0), |s| s.hero_weight)
+    }
 
     /// `(eta_o, eta_i)`: on `wo`'s side and beyond.
     pub fn seen_from(&self, wo: Vec3) -> (f32, f32) {
@@ -56,17 +94,30 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// Weights `(R, T)` of reflection and transmission at a (micro)facet; `T` is of power, black under total reflection.
-    pub(crate) fn at(&self, cos_o: f32, eta_o: f32, eta_i: f32) -> (Light, Light) {
+    /// Weights `(R, T)` of reflection and transmission at a (micro)facet, seen from `wo`'s side at this cosine; `T` is of power,
+    /// black under total reflection, and still of all lanes.
+    pub(crate) fn at(&self, cos_o: f32, interface: &Interface, wo: Vec3) -> (Light, Light) {
+        let (eta_o, eta_i) = interface.seen_from(wo);
+        let Some(spread) = &interface.spread else {
+            let (r, t) = self.parts(cos_o, eta_o, eta_i);
+            return (self.reflect * r, self.transmit * t);
+        };
+        let (etas_o, etas_i) = if wo.z > 0.0 { (spread.above, spread.below) } else { (spread.below, spread.above) };
+        let parts: [(f32, f32); 4] = core::array::from_fn(|lane| self.parts(cos_o, etas_o[lane], etas_i[lane]));
+        (self.reflect * Light(parts.map(|p| p.0)), self.transmit * Light(parts.map(|p| p.1)))
+    }
+
+    /// How much of each part there is.
+    fn parts(&self, cos_o: f32, eta_o: f32, eta_i: f32) -> (f32, f32) {
         let f = match self.fresnel {
             Fresnel::Constant => {
                 let passes = fresnel::refracted_cosine(cos_o, eta_o, eta_i).is_some();
-                return (self.reflect, if passes { self.transmit } else { Light::BLACK });
+                return (1.0, if passes { 1.0 } else { 0.0 });
             }
             Fresnel::Schlick => fresnel::dielectric_schlick(cos_o, eta_o, eta_i),
             Fresnel::Exact => fresnel::dielectric(cos_o, eta_o, eta_i),
         };
-        (self.reflect * f, self.transmit * (1.0 - f))
+        (f, 1.0 - f)
     }
 
     /// What turns a transmitted power into what travels along `wo` in this mode. The constant hack leaves radiance alone,
@@ -96,13 +147,19 @@ impl DeltaPair {
 
     /// Weights `(R, T)` of power for light along `wo`.
     pub(crate) fn weights(&self, wo: Vec3) -> (Light, Light) {
-        let (eta_o, eta_i) = self.interface.seen_from(wo);
-        self.split.at(wo.z.abs(), eta_o, eta_i)
+        self.split.at(wo.z.abs(), &self.interface, wo)
     }
 
     /// The mirrored direction with weight `f`, chosen with probability `pdf`.
     pub(crate) fn reflected(&self, wo: Vec3, f: Light, pdf: f32) -> BsdfSample {
-        BsdfSample { wi: Vec3::new(-wo.x, -wo.y, wo.z), f, pdf, lobe: Lobe::DeltaReflection, eta: 1.0 }
+        BsdfSample {
+            wi: Vec3::new(-wo.x, -wo.y, wo.z),
+            f,
+            pdf,
+            lobe: Lobe::DeltaReflection,
+            eta: 1.0,
+            disperses: false,
+        }
     }
 
     /// The refracted direction with weight of power `t`, chosen with probability `pdf`.
@@ -110,8 +167,15 @@ impl DeltaPair {
         let (eta_o, eta_i) = self.interface.seen_from(wo);
         let n = Vec3::new(0.0, 0.0, 1.0_f32.copysign(wo.z));
         let wi = fresnel::refract(wo, n, eta_o, eta_i)?;
-        let f = t * self.split.transmission_scale(eta_o, eta_i, mode);
-        Some(BsdfSample { wi, f, pdf, lobe: Lobe::DeltaTransmission, eta: eta_i / eta_o })
+        let f = t * self.split.transmission_scale(eta_o, eta_i, mode) * self.interface.refracted_weight();
+        Some(BsdfSample {
+            wi,
+            f,
+            pdf,
+            lobe: Lobe::DeltaTransmission,
+            eta: eta_i / eta_o,
+            disperses: self.interface.disperses(),
+        })
     }
 
     pub(crate) fn branches(&self, wo: Vec3, mode: Mode) -> Branches {

@@ -43,7 +43,7 @@ use super::boundary::{DeltaPair, Fresnel, Split, pick};
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
 use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
-use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -52,7 +52,13 @@ pub const SPEC: TypeSpec = TypeSpec {
     doc: "A smooth clear boundary: glass, water, diamond.",
     params: &[IOR, FRESNEL, REFLECTANCE_ROW, TRANSMITTANCE_ROW, ABSORPTION, PRIORITY],
 };
-pub(super) const IOR: ParamSpec = ParamSpec::number("ior", 1.5, "refractive index inside").range((0.01, f64::INFINITY));
+pub(super) const IOR: ParamSpec = ParamSpec::new(
+    "ior",
+    ParamType::Index,
+    Fallback::Number(1.5),
+    "refractive index inside: a number, { material = \"N-BK7\" }, { file = \"x.yml\" }, { cauchy = [A, B] } or { sellmeier = [B.., C..] }",
+)
+.range((0.01, f64::INFINITY));
 pub(super) const FRESNEL: ParamSpec = ParamSpec::choice(
     "fresnel",
     Fresnel::WORDS,
@@ -86,9 +92,9 @@ pub struct Dielectric {
 /// The filling that a dielectric's rows describe.
 pub(super) fn read_medium(params: &Params, palette: &Palette) -> Medium {
     Medium {
-        ior: params.f32("ior"),
+        ior: palette.index(params, "ior"),
         priority: params.integer("priority") as i32,
-        absorption: palette.unbounded(params.color("absorption").map(|x| x as f32)),
+        absorption: palette.absorption(params, "absorption"),
     }
 }
 

@@ -85,7 +85,14 @@ impl Scatter for Lambert {
             wi.z = -wi.z;
         }
         let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0).then(|| BsdfSample { wi, f: self.eval(wo, wi, lobes, mode), pdf, lobe: LOBE, eta: 1.0 })
+        (pdf > 0.0).then(|| BsdfSample {
+            wi,
+            f: self.eval(wo, wi, lobes, mode),
+            pdf,
+            lobe: LOBE,
+            eta: 1.0,
+            disperses: false,
+        })
     }
 
     fn ambient(&self) -> Light {

@@ -72,7 +72,7 @@ impl Mirror {
     fn reflected(&self, wo: Vec3) -> Option<BsdfSample> {
         let f = metal(self.reflectance, self.fresnel, wo.z.abs());
         let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-        (wo.z != 0.0 && !f.is_black()).then_some(BsdfSample { wi, f, pdf: 1.0, lobe: LOBE, eta: 1.0 })
+        (wo.z != 0.0 && !f.is_black()).then_some(BsdfSample { wi, f, pdf: 1.0, lobe: LOBE, eta: 1.0, disperses: false })
     }
 }
 

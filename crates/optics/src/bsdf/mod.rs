@@ -23,15 +23,18 @@ use kirkas_geometry::Vec3;
 use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 
 pub mod blinn_phong;
+pub mod conductor;
 pub mod dielectric;
 pub mod emitter;
 pub mod lambert;
 pub mod mirror;
 pub mod phong;
+pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
 
 mod boundary;
+mod conductor_body;
 mod lobes;
 mod phong_body;
 
@@ -46,6 +49,8 @@ models! {
     dielectric Dielectric,
     rough_mirror RoughMirror,
     rough_dielectric RoughDielectric,
+    conductor Conductor,
+    rough_conductor RoughConductor,
     emitter Emitter,
 }
 
@@ -71,9 +76,16 @@ pub struct BsdfSample {
     pub lobe: Lobe,
     /// Refractive index on `wi`'s side over the one on `wo`'s; 1 for reflection.
     pub eta: f32,
+    /// True when only the hero went this way: the path goes on with [`BsdfSample::lanes`].
+    pub disperses: bool,
 }
 
 impl BsdfSample {
+    /// The lanes with which a path goes on.
+    pub fn lanes(&self, lanes: Lanes) -> Lanes {
+        if self.disperses { lanes.alone() } else { lanes }
+    }
+
     /// What the light along `wi` is multiplied by: `f |cos| / pdf`, for a delta lobe `f / pdf`.
     pub fn weight(&self) -> Light {
         let cos = if self.lobe.is_delta() { 1.0 } else { self.wi.z.abs() };

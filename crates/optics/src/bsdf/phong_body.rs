@@ -79,14 +79,14 @@ pub struct Body<H> {
 impl<H: Highlight> Prepare for Prepared<H> {
     type At = Body<H>;
 
-    fn prepare(params: &Params, _: &Palette) -> Self {
+    fn prepare(params: &Params, palette: &Palette) -> Self {
         let form = if params.text("form") == Some("classic") { Form::Classic } else { Form::Normalized };
         Prepared {
             form,
             fresnel: Fresnel::of(params.text("fresnel")),
             own_ambient: params.has("ambient"),
             medium: Medium {
-                ior: params.f32("ior"),
+                ior: palette.index(params, "ior"),
                 priority: params.integer("priority") as i32,
                 absorption: Spectrum::BLACK,
             },
@@ -106,7 +106,7 @@ impl<H: Highlight> Prepare for Prepared<H> {
             form: self.form,
             ambient: if self.own_ambient { slots[AMBIENT] } else { slots[DIFFUSE] },
             delta: DeltaPair { split, interface },
-            coat: (!self.transmits).then_some(self.medium.ior),
+            coat: (!self.transmits).then(|| self.medium.ior.at_d_line()),
             shape: PhantomData,
         }
     }
@@ -156,11 +156,7 @@ impl<H: Highlight> Body<H> {
     fn boundary(&self, wo: Vec3) -> DeltaPair {
         let Some(ior) = self.coat else { return self.delta };
         let outside = self.delta.interface.seen_from(wo).0;
-        let interface = if wo.z > 0.0 {
-            Interface { eta_above: outside, eta_below: ior }
-        } else {
-            Interface { eta_above: ior, eta_below: outside }
-        };
+        let interface = if wo.z > 0.0 { Interface::new(outside, ior) } else { Interface::new(ior, outside) };
         DeltaPair { interface, ..self.delta }
     }
 }
@@ -216,7 +212,7 @@ impl<H: Highlight> Scatter for Body<H> {
         };
         let wi = upper(wi, wo);
         let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0).then(|| BsdfSample { wi, f: self.eval(wo, wi, lobes, mode), pdf, lobe, eta: 1.0 })
+        (pdf > 0.0).then(|| BsdfSample { wi, f: self.eval(wo, wi, lobes, mode), pdf, lobe, eta: 1.0, disperses: false })
     }
 
     fn delta_branches(&self, wo: Vec3, mode: Mode) -> Branches {

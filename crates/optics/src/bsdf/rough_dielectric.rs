@@ -86,15 +86,15 @@ impl Prepare for Prepared {
     fn prepare(params: &Params, palette: &Palette) -> Self {
         Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params, palette) }
     }
-    fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> RoughDielectric {
-        let (above, mut below) = (interface.eta_above, interface.eta_below);
+    fn at(&self, _: &Lanes, slots: &[Light], mut interface: Interface) -> RoughDielectric {
+        let (above, below) = (interface.eta_above, interface.eta_below);
         if (below / above - 1.0).abs() < LEAST_CONTRAST {
-            below = above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST };
+            interface.eta_below = above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST };
         }
         RoughDielectric {
             split: Split { reflect: slots[REFLECTANCE], transmit: slots[TRANSMITTANCE], fresnel: self.fresnel },
             facets: Ggx::new(slots[ROUGHNESS][0]),
-            interface: Interface { eta_above: above, eta_below: below },
+            interface,
         }
     }
     fn medium(&self) -> Option<&Medium> {
@@ -144,8 +144,8 @@ impl RoughDielectric {
     }
 
     /// Weights of power of the lobes asked for, at one facet.
-    fn wanted(&self, cos_o: f32, eta_o: f32, eta_i: f32, lobes: LobeSet) -> (Light, Light) {
-        let (r, t) = self.split.at(cos_o, eta_o, eta_i);
+    fn wanted(&self, cos_o: f32, wo: Vec3, lobes: LobeSet) -> (Light, Light) {
+        let (r, t) = self.split.at(cos_o, &self.interface, wo);
         let keep = |lobe, w| if lobes.contains(lobe) { w } else { Light::BLACK };
         (keep(Lobe::GlossyReflection, r), keep(Lobe::GlossyTransmission, t))
     }
@@ -159,7 +159,7 @@ impl Scatter for RoughDielectric {
 
     fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
         let Some(p) = self.passage(wo, wi) else { return Light::BLACK };
-        let (r, t) = self.wanted(p.wo.dot(p.h), p.eta_o, p.eta_i, lobes);
+        let (r, t) = self.wanted(p.wo.dot(p.h), wo, lobes);
         let d = self.facets.d(p.h);
         if p.is_reflection() {
             return r * (d * self.facets.g2_reflection(p.wo, p.wi) / (4.0 * p.wo.z * p.wi.z));
@@ -167,13 +167,14 @@ impl Scatter for RoughDielectric {
         // Walter et al. 2007, equation 21, for importance (eta_i^2 on top).
         let cosines = (p.wo.dot(p.h) * p.wi.dot(p.h) / (p.wo.z * p.wi.z)).abs();
         let f = cosines * d * self.facets.g2_transmission(p.wo, p.wi) * square(p.eta_i / p.half_length());
-        t * (f * self.split.transmission_scale(p.eta_o, p.eta_i, mode))
+        let power = t * (f * self.split.transmission_scale(p.eta_o, p.eta_i, mode));
+        power * self.interface.refracted_weight()
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
         let Some(p) = self.passage(wo, wi) else { return 0.0 };
         let cos_o = p.wo.dot(p.h);
-        let (r, t) = self.wanted(cos_o, p.eta_o, p.eta_i, lobes);
+        let (r, t) = self.wanted(cos_o, wo, lobes);
         let (r, t) = (r.max_component(), t.max_component());
         // How much solid angle of wi a solid angle of h covers (equations 14 and 17), and the chance of this way.
         let (chosen, dh_dwi) = if p.is_reflection() {
@@ -193,7 +194,7 @@ impl Scatter for RoughDielectric {
         let turn = |v: Vec3| if wo.z < 0.0 { Vec3::new(v.x, v.y, -v.z) } else { v };
         let up = turn(wo);
         let h = self.facets.sample_visible_normal(up, u);
-        let (r, t) = self.wanted(up.dot(h), eta_o, eta_i, lobes);
+        let (r, t) = self.wanted(up.dot(h), wo, lobes);
         let (wi, lobe, eta) = match pick([r.max_component(), t.max_component()], u_lobe)?.0 {
             0 => (reflect(up, h), Lobe::GlossyReflection, 1.0),
             _ => (refract(up, h, eta_o, eta_i)?, Lobe::GlossyTransmission, eta_i / eta_o),
@@ -204,7 +205,9 @@ impl Scatter for RoughDielectric {
         }
         let wi = turn(wi);
         let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample { wi, f: self.eval(wo, wi, lobes, mode), pdf, lobe, eta })
+        let disperses = lobe.is_transmission() && self.interface.disperses();
+        let f = self.eval(wo, wi, lobes, mode);
+        (pdf > 0.0 && pdf.is_finite()).then_some(BsdfSample { wi, f, pdf, lobe, eta, disperses })
     }
 
     fn traced_lobes(&self) -> LobeSet {

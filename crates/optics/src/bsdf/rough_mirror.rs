@@ -123,6 +123,7 @@ impl Scatter for RoughMirror {
             pdf,
             lobe: LOBE,
             eta: 1.0,
+            disperses: false,
         })
     }
 

@@ -5,9 +5,11 @@ mod closed_forms;
 mod delta;
 mod distribution;
 mod energy;
+mod indices;
 mod lanes;
 mod microfacet;
 mod models;
+mod spectrum;
 mod values;
 
 /// `|a - b| <= tolerance`, with both in the message.

@@ -44,8 +44,8 @@ pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
             Lanes::RGB.parameter(row, value)
         })
         .collect();
-    let below = model.medium().map_or(outside, |m| m.ior);
-    let interface = Interface { eta_above: outside, eta_below: below };
+    let below = model.medium().map_or(outside, |m| m.ior.at_d_line());
+    let interface = Interface::new(outside, below);
     let bsdf = model.at(&Lanes::RGB, &slots, interface);
     let classic = params.entity.params.get("form").and_then(|n| n.text()) == Some("classic");
     let constant_pane =
@@ -114,6 +114,16 @@ fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
             (vec![n("ior", 2.4), n("roughness", 0.15), n("reflectance", 0.5)], 1.0),
             (vec![n("reflectance", 0.25), n("transmittance", 0.5), n("roughness", 0.8), t("fresnel", "constant")], 1.0),
         ],
+        "conductor" => vec![
+            (vec![n("ior", 0.2), c("k", [3.5, 2.5, 1.9])], 1.0),
+            (vec![n("ior", 1.5), n("k", 4.0), n("reflectance", 0.5)], 1.33),
+            (vec![("ior", Value::from(Map::default().with("material", "gold")))], 1.0),
+        ],
+        "rough_conductor" => vec![
+            (vec![n("ior", 0.2), c("k", [3.5, 2.5, 1.9]), n("roughness", 0.5)], 1.0),
+            (vec![n("ior", 1.5), n("k", 4.0), n("roughness", 0.15)], 1.33),
+            (vec![("ior", Value::from(Map::default().with("material", "copper"))), n("roughness", 1.0)], 1.0),
+        ],
         "emitter" => vec![
             (vec![], 1.0),
             (vec![n("intensity", 5.0)], 1.0),
@@ -147,7 +157,18 @@ fn the_list_holds_each_model_once_with_the_rows_of_the_catalogue() {
     let names: Vec<&str> = SPECS.iter().map(|s| s.name).collect();
     assert_eq!(
         names,
-        ["lambert", "phong", "blinn_phong", "mirror", "dielectric", "rough_mirror", "rough_dielectric", "emitter"]
+        [
+            "lambert",
+            "phong",
+            "blinn_phong",
+            "mirror",
+            "dielectric",
+            "rough_mirror",
+            "rough_dielectric",
+            "conductor",
+            "rough_conductor",
+            "emitter"
+        ]
     );
     assert!(SPECS.iter().all(|s| s.kind == Kind::Material && !s.doc.is_empty()));
     let rows = |i: usize| SPECS[i].params.iter().map(|p| p.name).collect::<Vec<_>>();
@@ -190,14 +211,14 @@ fn media_are_read_from_the_rows() {
         parse(&[("ior", Value::Float(1.7)), ("priority", Value::Int(3)), ("absorption", Value::from([0.1, 0.2, 0.3]))]);
     for name in ["dielectric", "rough_dielectric"] {
         let m = build(name, &glass, 1.0).model.medium().cloned().unwrap();
-        assert_eq!((m.ior, m.priority, m.absorption.rgb()), (1.7, 3, [0.1, 0.2, 0.3]));
+        assert_eq!((m.ior.at_d_line(), m.priority, m.absorption.rgb()), (1.7, 3, [0.1, 0.2, 0.3]));
     }
     for name in ["phong", "blinn_phong"] {
         let with = |v: Value| {
             build(name, &parse(&[("transmit", v), ("ior", Value::Float(1.3)), ("priority", Value::Int(2))]), 1.0)
         };
         let m = with(Value::Float(0.5)).model.medium().cloned().unwrap();
-        assert_eq!((m.ior, m.priority, m.absorption.rgb()), (1.3, 2, [0.0; 3]));
+        assert_eq!((m.ior.at_d_line(), m.priority, m.absorption.rgb()), (1.3, 2, [0.0; 3]));
         assert!(with(Value::from("a_texture")).model.medium().is_some());
         assert!(with(Value::Float(0.0)).model.medium().is_none());
         assert!(build(name, &Map::default(), 1.0).model.medium().is_none());

@@ -60,7 +60,7 @@ impl GradientBackground {
     pub fn new(p: &Params, palette: &Palette) -> Self {
         let light = |c: [f64; 3]| palette.illuminant(c.map(|x| x as f32));
         if p.spec().name == "constant" {
-            return GradientBackground::of(Vec3::Y, vec![(0.0, light(p.color("color")))]);
+            return GradientBackground::of(Vec3::Y, vec![(0.0, palette.shine(&palette.light(p, "color"), 1.0))]);
         }
         let stop = |n: &Node| {
             let l = n.list()?;

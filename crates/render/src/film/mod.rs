@@ -10,6 +10,7 @@ pub mod relight;
 
 use crate::observe::SampleId;
 pub use aov::{AovSample, AovSet};
+use kirkas_optics::ColorMode;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, TypeSpec, spec::ANY, spec::NOT_NEGATIVE};
 
 /// The table of `[film]`.
@@ -46,6 +47,11 @@ pub const SPEC: TypeSpec = TypeSpec {
         ParamSpec::number("frames_per_second", 24.0, "`render --frames` opens the shutter for frame n at n over this, in seconds.")
             .unit("1/s")
             .range((0.001, 100_000.0)),
+        ParamSpec::choice(
+            "color",
+            &ColorMode::NAMES,
+            "Light as red, green and blue, or as wavelengths: dispersion, true colours of lamps and metals.",
+        ),
         ParamSpec::bool("light_groups", false, "Also keep one layer per light group; `kirkas relight` mixes them anew."),
         ParamSpec::number("clamp", 0.0, "Firefly clamp: the most that one contribution to a sample may bring; 0 = no clamp. It darkens.")
             .unit("radiance")

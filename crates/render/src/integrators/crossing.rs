@@ -4,7 +4,7 @@
 use super::{MediumStack, PathState};
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::DVec3;
-use kirkas_optics::{Bsdf, Interface, Lobe};
+use kirkas_optics::{Bsdf, Lobe};
 
 /// Covered boundaries passed in a row before a path is given up.
 const MOST_PASSED: u32 = 256;
@@ -28,16 +28,7 @@ pub fn passed(path: &PathState, hit: &SurfaceHit) -> Option<PathState> {
 
 /// The surface's scattering, with the bodies on both its sides.
 pub fn bsdf(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
-    let interface = match &scene.material(hit).medium {
-        Some(inside) => {
-            let others = if hit.is_front { path.media } else { path.media.left(hit.material) };
-            let outside = scene.body_of(&others).map_or(1.0, |m| m.ior);
-            // A body that was never entered (its boundary touches another's) is left without an event.
-            let is_known = hit.is_front || path.media.materials().contains(&hit.material);
-            Interface { eta_above: outside, eta_below: if is_known { inside.ior } else { outside } }
-        }
-        None => Interface::VACUUM,
-    };
+    let interface = scene.interface(&path.lanes, &path.media, hit);
     scene.bsdf(&path.lanes, hit, interface)
 }
 

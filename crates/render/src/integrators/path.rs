@@ -238,7 +238,7 @@ impl<'a> Vertex<'a> {
         }
         let last = LastVertex { position: hit.position, normal: self.normal, pdf: s.pdf };
         Some(PathState {
-            lanes: path.lanes,
+            lanes: s.lanes(path.lanes),
             ray: hit.ray_towards(direction, &path.ray),
             throughput,
             depth: path.depth + 1,

@@ -99,6 +99,7 @@ impl Integrator for PathSimple {
                 return;
             }
             path.throughput *= s.weight();
+            path.lanes = s.lanes(path.lanes);
             path.depth += 1;
             path.branch = combine(path.branch, BOUNCE);
             path.media = crossing::media_towards(scene, &path.media, surface, direction);

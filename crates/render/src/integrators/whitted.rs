@@ -30,7 +30,7 @@ use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::hash::{combine, of_name};
 use kirkas_geometry::{DVec3, Vec3};
-use kirkas_optics::{Bsdf, Light, Lobe, LobeSet, Mode};
+use kirkas_optics::{Bsdf, BsdfSample, Light, LobeSet, Mode};
 use kirkas_scene::spec::{NOT_NEGATIVE, UNIT};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -255,7 +255,7 @@ impl Whitted {
         let before = out.paths.len();
         for s in bsdf.delta_branches(wo, Mode::Radiance) {
             let kind = if s.lobe.is_transmission() { RayKind::Refracted } else { RayKind::Reflected };
-            self.send(scene, path, hit, s.wi, s.lobe, s.weight(), kind, 0, out);
+            self.send(scene, path, hit, &s, s.weight(), kind, 0, out);
         }
         let count = if path.depth == 0 { self.glossy_samples } else { 1 };
         for lobe in bsdf.traced_lobes().iter() {
@@ -264,7 +264,7 @@ impl Whitted {
                 let u = sampler.pair_of(purpose, i, count);
                 if let Some(s) = bsdf.sample(wo, 0.0, u, LobeSet::of(lobe), Mode::Radiance) {
                     let weight = s.weight() * (1.0 / count as f32);
-                    self.send(scene, path, hit, s.wi, s.lobe, weight, RayKind::Glossy, i, out);
+                    self.send(scene, path, hit, &s, weight, RayKind::Glossy, i, out);
                 }
             }
         }
@@ -278,13 +278,13 @@ impl Whitted {
         scene: &Scene,
         path: &PathState,
         hit: &SurfaceHit,
-        wi: Vec3,
-        lobe: Lobe,
+        sample: &BsdfSample,
         weight: Light,
         kind: RayKind,
         number: u32,
         out: &mut StepOutput,
     ) {
+        let (wi, lobe) = (sample.wi, sample.lobe);
         let throughput = path.throughput * weight;
         if throughput.max_component() < self.min_contribution || throughput.is_black() {
             return;
@@ -296,7 +296,7 @@ impl Whitted {
         }
         out.paths.push(PathState {
             ray: hit.ray_towards(direction, &path.ray),
-            lanes: path.lanes,
+            lanes: sample.lanes(path.lanes),
             throughput,
             depth: path.depth + 1,
             kind,

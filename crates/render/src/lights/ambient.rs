@@ -31,5 +31,5 @@ pub const SPEC: TypeSpec = TypeSpec {
 
 /// What every surface gains, times its ambient colour.
 pub fn radiance(p: &Params, palette: &Palette) -> Spectrum {
-    palette.illuminant(p.color("color").map(|c| (c * p.number("intensity")) as f32))
+    palette.shine(&palette.light(p, "color"), p.number("intensity"))
 }

@@ -56,7 +56,7 @@ impl DirectionalLight {
         let unit = p.text("unit").unwrap_or("plain");
         DirectionalLight {
             towards: -DVec3::from_array(p.vector("direction")).normalize_or(DVec3::NEG_Y),
-            irradiance: units::light(palette, p.number("intensity"), p.color("color"), unit, 1.0),
+            irradiance: units::light(palette, p.number("intensity"), &palette.light(p, "color"), unit, 1.0),
         }
     }
 

@@ -69,7 +69,7 @@ impl PointLight {
         let unit = p.text("unit").unwrap_or("plain");
         PointLight {
             position: DVec3::from_array(p.vector("position")),
-            intensity: units::light(palette, p.number("intensity"), p.color("color"), unit, 4.0 * PI),
+            intensity: units::light(palette, p.number("intensity"), &palette.light(p, "color"), unit, 4.0 * PI),
             attenuation: p.optional_vector("attenuation"),
         }
     }

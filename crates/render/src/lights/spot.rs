@@ -73,7 +73,7 @@ impl SpotLight {
             axis: DVec3::from_array(p.vector("direction")).normalize_or(DVec3::NEG_Y),
             cos_hotspot,
             cos_falloff,
-            intensity: units::light(palette, p.number("intensity"), p.color("color"), unit, solid_angle),
+            intensity: units::light(palette, p.number("intensity"), &palette.light(p, "color"), unit, solid_angle),
             attenuation: p.optional_vector("attenuation"),
         }
     }

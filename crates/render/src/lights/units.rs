@@ -8,16 +8,17 @@
 //! as bright as the number. Hence the factor pi: it appears with radiance E / pi.
 
 use core::f64::consts::PI;
-use kirkas_optics::{Palette, Spectrum};
+use kirkas_optics::{Paint, Palette, Spectrum};
 
 /// Photometric efficacy, lm/W.
 pub const EFFICACY: f64 = 683.0;
 
 /// How a value in `unit` with `color` shines per `solid_angle`, the effective one that its power goes into (sr; for
 /// surfaces: the projected solid angle times area, for directions 1).
-pub fn light(palette: &Palette, value: f64, color: [f64; 3], unit: &str, solid_angle: f64) -> Spectrum {
-    let luminance = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-    let mean = (color[0] + color[1] + color[2]) / 3.0;
+pub fn light(palette: &Palette, value: f64, color: &Paint, unit: &str, solid_angle: f64) -> Spectrum {
+    let rgb = color.rgb;
+    let luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    let mean = (rgb[0] + rgb[1] + rgb[2]) / 3.0;
     let over = |v: f64, by: f64| if by > 0.0 { v / by } else { 0.0 };
     let scale = match unit {
         "plain" => value * PI,
@@ -26,7 +27,7 @@ pub fn light(palette: &Palette, value: f64, color: [f64; 3], unit: &str, solid_a
         "cd" | "lux" | "nit" => over(value, luminance * EFFICACY),
         _ => value,
     };
-    palette.illuminant(color.map(|c| (c * scale) as f32))
+    palette.shine(color, scale)
 }
 
 /// Distance falloff `1 / (a r^2 + b r + c)`; `None` stands for the true `1 / r^2`.
@@ -42,18 +43,18 @@ mod tests {
 
     #[test]
     fn a_watt_spread_over_the_sphere_is_a_twelfth_of_a_watt_per_steradian() {
-        let l = light(&Palette::RGB, 1.0, [1.0; 3], "W", 4.0 * PI).rgb();
+        let l = light(&Palette::RGB, 1.0, &[1.0; 3].into(), "W", 4.0 * PI).rgb();
         assert!((l[1] - (1.0 / (4.0 * PI)) as f32).abs() < 1e-7);
     }
 
     #[test]
     fn a_candela_is_a_683rd_of_a_watt_per_steradian_whatever_the_colour() {
         for c in [[1.0; 3], [1.0, 0.5, 0.1]] {
-            let l = light(&Palette::RGB, 683.0, c, "cd", 1.0).rgb();
+            let l = light(&Palette::RGB, 683.0, &c.into(), "cd", 1.0).rgb();
             let y = 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2];
             assert!((y - 1.0).abs() < 1e-6);
         }
-        let white = |value, unit, solid_angle| light(&Palette::RGB, value, [1.0; 3], unit, solid_angle);
+        let white = |value, unit, solid_angle| light(&Palette::RGB, value, &[1.0; 3].into(), unit, solid_angle);
         assert_eq!(white(12.57, "lm", 12.57), white(1.0, "cd", 1.0));
     }
 

@@ -30,8 +30,7 @@ pub struct Material {
     pub emission: Option<Emission>,
     /// What fills the body, if the surface bounds one.
     pub medium: Option<Medium>,
-    /// How much brighter radiance is inside the body: the index squared, or 1 with the classics' constants.
-    pub radiance_gain: f32,
+    scales_radiance: bool,
 }
 
 /// One texture row of the model.
@@ -52,7 +51,10 @@ enum Value {
 }
 
 impl Row {
-    fn new(spec: &'static ParamSpec, source: Option<ColorSource>, palette: &Palette) -> Self {
+    fn new(spec: &'static ParamSpec, source: Option<ColorSource>, params: &Params, palette: &Palette) -> Self {
+        if let Some(spectrum) = palette.surface(params, spec.name, spec.range.1 as f32) {
+            return Row { spec, value: Value::Color(spectrum) };
+        }
         let value = match (source, spec.ty) {
             (None, _) => Value::Absent,
             (Some(ColorSource::Texture(number)), _) => Value::Texture(number),
@@ -113,7 +115,8 @@ impl Material {
             (_, kirkas_scene::Fallback::Absent) => names.optional_color(params, row.name),
             _ => Some(names.color(params, row.name)),
         };
-        let rows: Vec<Row> = texture_rows(params.spec()).map(|spec| Row::new(spec, source(spec), palette)).collect();
+        let rows: Vec<Row> =
+            texture_rows(params.spec()).map(|spec| Row::new(spec, source(spec), params, palette)).collect();
         debug_assert!(rows.len() <= MOST_ROWS);
         let medium = model.medium().cloned();
         let is_constant =
@@ -123,10 +126,18 @@ impl Material {
             rows,
             alpha: names.number(params, "alpha"),
             emission: (params.spec().name == "emitter").then(|| Emission::new(params, names, palette)),
-            radiance_gain: medium.as_ref().filter(|_| !is_constant).map_or(1.0, |m| m.ior * m.ior),
+            scales_radiance: !is_constant,
             medium,
             model,
         })
+    }
+
+    /// How much brighter radiance is inside the body: the index squared, or 1 with the classics' constants.
+    pub fn radiance_gain(&self, lanes: &Lanes) -> Light {
+        match &self.medium {
+            Some(m) if self.scales_radiance => m.ior.at(lanes).map(|n| n * n),
+            _ => Light::splat(1.0),
+        }
     }
 
     /// True when every hit counts.
@@ -173,7 +184,7 @@ impl Emission {
     fn new(p: &Params, names: &TextureNames, palette: &Palette) -> Self {
         Emission {
             radiance: match names.color(p, "radiance") {
-                ColorSource::Constant(c) => Radiance::Constant(palette.illuminant(c)),
+                ColorSource::Constant(_) => Radiance::Constant(palette.shine(&palette.light(p, "radiance"), 1.0)),
                 ColorSource::Texture(number) => Radiance::Texture(number),
             },
             intensity: p.number("intensity"),

@@ -48,6 +48,7 @@ fn variants() -> [String; 4] {
             ),
             ("shadows = \"transparent\"\nglossy_samples = 2\n", ""),
             ("[sampler]", &format!("[sampler]\ntype = \"{sampler}\"")),
+            ("light_groups = true", "light_groups = true\ncolor = \"spectral\""),
         ])
     };
     [SCENE.to_string(), variant(&plain), traced("path", "halton"), traced("path_simple", "stratified")]

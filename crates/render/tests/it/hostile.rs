@@ -51,6 +51,10 @@ impl Dice {
                 format!("{}", self.number((row.range.0, row.range.1.min(3.0).max(row.range.0))) as i64)
             }
             ParamType::Number | ParamType::NumberTexture => format!("{:e}", self.number(row.range)),
+            ParamType::Index if self.below(2) == 0 => {
+                format!("{{ material = {:?} }}", self.pick(&["gold", "aluminium"]))
+            }
+            ParamType::Index => format!("{:e}", self.number(row.range)),
             ParamType::Choice(words) => format!("{:?}", self.pick(words)),
             ParamType::Vector2 => self.numbers(row, 2),
             ParamType::Vector | ParamType::Color | ParamType::ColorTexture => self.numbers(row, 3),

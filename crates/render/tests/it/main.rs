@@ -6,6 +6,7 @@ mod backgrounds;
 mod bodies;
 mod cameras;
 mod closed_forms;
+mod color_modes;
 mod contributions;
 mod effects;
 mod everything;

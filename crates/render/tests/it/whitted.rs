@@ -258,7 +258,7 @@ fn the_highest_priority_rules_and_the_last_entered_among_equals() {
     let scene = &p.scene;
     let [low, mid, also_mid, high] = [1_u32, 2, 3, 4];
     let stack = |m: &[u32]| m.iter().fold(MediumStack::EMPTY, |s, &m| s.entered(m));
-    let ior = |m: &[u32]| scene.body_of(&stack(m)).map(|b| b.ior);
+    let ior = |m: &[u32]| scene.body_of(&stack(m)).map(|b| b.ior.at_d_line());
     assert_eq!(ior(&[]), None);
     assert_eq!(ior(&[low]), Some(1.1));
     assert_eq!(ior(&[low, high]), Some(1.4));

@@ -1,0 +1,74 @@
+//! What smooth and rough conductors share: their rows and the reflectance of a metal at an angle.
+
+use super::slot;
+use crate::index::MetalCurves;
+use crate::{Lanes, Light, Palette, fresnel};
+use kirkas_scene::{Fallback, ParamSpec, ParamType, Params};
+
+/// Row `ior`.
+pub(super) const IOR: ParamSpec = ParamSpec::new(
+    "ior",
+    ParamType::Index,
+    Fallback::Required,
+    "refractive index n + ik: { material = \"gold\" }, { file = \"Au.yml\" }, or a number for n",
+)
+.range((0.01, f64::INFINITY));
+/// Row `k`.
+pub(super) const K: ParamSpec = ParamSpec::new(
+    "k",
+    ParamType::Color,
+    Fallback::Vector([0.0; 3]),
+    "extinction coefficient, where `ior` is a number",
+)
+.range((0.0, f64::INFINITY));
+/// Row `reflectance`.
+pub(super) const REFLECTANCE_ROW: ParamSpec = ParamSpec::reflectance("reflectance", [1.0; 3], "tints the reflection");
+/// All of them.
+pub(super) const ROWS: [ParamSpec; 3] = [IOR, K, REFLECTANCE_ROW];
+pub(super) const REFLECTANCE: usize = slot(&ROWS, "reflectance");
+
+/// The constants of a conductor.
+#[derive(Clone, Debug)]
+pub enum Constants {
+    /// As measured.
+    Measured(MetalCurves),
+    /// n, and k as a colour.
+    Plain(f32, crate::Spectrum),
+}
+
+/// At a path's lanes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Metal {
+    n: Light,
+    k: Light,
+    tint: Light,
+}
+
+impl Constants {
+    pub(super) fn read(params: &Params, palette: &Palette) -> Self {
+        match palette.constants(params, "ior").as_ref().and_then(MetalCurves::new) {
+            Some(curves) => Constants::Measured(curves),
+            None => Constants::Plain(palette.index(params, "ior").at_d_line(), palette.absorption(params, "k")),
+        }
+    }
+
+    pub(super) fn at(&self, lanes: &Lanes, tint: Light) -> Metal {
+        let (n, k) = match self {
+            Constants::Measured(curves) => curves.at(lanes),
+            Constants::Plain(n, k) => (Light::splat(*n), k.at(lanes)),
+        };
+        Metal { n, k, tint }
+    }
+}
+
+impl Metal {
+    pub(super) fn is_black(&self) -> bool {
+        self.tint.is_black()
+    }
+
+    /// Reflectance at an angle, from the index `eta_o` outside.
+    pub(super) fn reflectance(&self, cos: f32, eta_o: f32) -> Light {
+        let at = |lane: usize| fresnel::conductor(cos, self.n[lane] / eta_o, self.k[lane] / eta_o);
+        Light(core::array::from_fn(at)) * self.tint
+    }
+}
