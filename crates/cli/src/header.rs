@@ -34,7 +34,7 @@ const UNITS: &str = "linear, scene-referred, Rec.709 primaries; 1.0 is one unit 
 const PREFIX: &str = "kirkas.";
 
 /// Texts that must agree between pictures that are added, and what is said where they do not.
-const MUST_AGREE: [(&str, &str); 7] = [
+const MUST_AGREE: [(&str, &str); 8] = [
     ("version", "the version of Kirkas"),
     ("scene_hash", "the scene"),
     ("overrides", "the overrides"),
