@@ -28,7 +28,7 @@ use crate::build::binary::MAX_DEPTH;
 use crate::build::costs::Costs;
 use crate::build::reference::Reference;
 use crate::build::reinsertion::{self, Effort};
-use crate::build::{binned_sah, morton, spatial_split};
+use crate::build::{binned_sah, morton, pure_leaves, spatial_split};
 use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
 use crate::primitive;
@@ -102,6 +102,11 @@ impl Tree {
                 reinsertion::improve(split, Effort::BEST, executor)
             }
         };
+        let is_triangle = |r: &Reference| {
+            geometries.get(r.ids().0 as usize).is_some_and(|g| matches!(g.shape, Shape::Triangles { .. }))
+        };
+        let is_mixed = binary.references.iter().any(is_triangle) && !binary.references.iter().all(is_triangle);
+        let binary = if is_mixed { pure_leaves::part(binary, &is_triangle) } else { binary };
         let is_compact = quality == Quality::Compact;
         let is_split = binary.references.len() > count;
         let numbers = Numbers::new(geometries);

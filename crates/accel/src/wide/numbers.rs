@@ -36,7 +36,12 @@ impl Numbers {
 
     #[inline(never)]
     fn find(&self, number: u32) -> (u32, u32) {
-        let geometry = self.0.partition_point(|&first| first <= number) - 1;
+        // Of a few, counting is quicker than searching.
+        let geometry = if self.0.len() <= 32 {
+            self.0.iter().map(|&first| usize::from(first <= number)).sum::<usize>() - 1
+        } else {
+            self.0.partition_point(|&first| first <= number) - 1
+        };
         let index = number - self.0[geometry];
         if geometry + 1 == self.0.len() { (IS_INSTANCE, index) } else { (geometry as u32, index) }
     }
