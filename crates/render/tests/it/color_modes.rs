@@ -136,18 +136,22 @@ fn measured_deviation(glass: &str, nanometres: f64, incidence: f64) -> f64 {
     let tilt = (incidence - 30.0).to_radians();
     // The camera looks a little beside where the slit is expected.
     let aim = tilt + 0.2_f64.to_radians();
-    let (x, y) = (-10.0 * aim.cos(), -10.0 * aim.sin());
+    // It looks at the middle of the left face, from where light crosses to the middle of the right one: no ray meets the base.
+    const MIDDLE: (f64, f64) = (-0.25, 0.1443);
+    let (x, y) = (MIDDLE.0 - 10.0 * aim.cos(), MIDDLE.1 - 10.0 * aim.sin());
     let slit = (FAR * tilt.cos(), -FAR * tilt.sin());
     let half = FAR * 0.01_f64.to_radians().tan();
     let toml = format!(
         "[film]\nwidth = {WIDTH}\nheight = 1\ncolor = \"spectral\"\nfilter = \"box\"\n\
-         [integrator]\nmin_contribution = 0\n[cameras.eye]\ntype = \"perspective\"\nposition = [{x:?}, {y:?}, 0]\nlook_at = [0, 0, 0]\n\
+         [integrator]\nmin_contribution = 0\n[cameras.eye]\ntype = \"perspective\"\nposition = [{x:?}, {y:?}, 0]\nlook_at = [{:?}, {:?}, 0]\n\
          up = [0, 0, 1]\nfov = {FOV}\nfov_axis = \"horizontal\"\n\
          [materials.glass]\ntype = \"dielectric\"\nior = {{ material = \"{glass}\" }}\n\
          [materials.line]\ntype = \"emitter\"\ntwo_sided = true\nradiance = {{ spectrum = \"line.spd\" }}\n\
          [objects.prism]\ntype = \"mesh\"\nmaterial = \"glass\"\nfile = \"prism.obj\"\n\
          [objects.slit]\ntype = \"rectangle\"\nmaterial = \"line\"\ncenter = [{:?}, {:?}, 0]\nedge_u = [{:?}, {:?}, 0]\n\
          edge_v = [0, 0, {FAR:?}]\n",
+        MIDDLE.0,
+        MIDDLE.1,
         slit.0,
         slit.1,
         2.0 * half * tilt.sin(),
