@@ -7,6 +7,7 @@
 use crate::hash::{mix64, unit_f32};
 
 /// Point `index` of the two-dimensional sequence that `seed` names, in `[0, 1)^2`.
+#[inline]
 pub fn owen_sobol_2d(index: u32, seed: u64) -> (f32, f32) {
     let s = mix64(seed);
     let shuffled = nested_uniform_shuffle(index, s as u32);
@@ -17,8 +18,10 @@ pub fn owen_sobol_2d(index: u32, seed: u64) -> (f32, f32) {
 }
 
 /// Point `index` of the one-dimensional sequence that `seed` names, in `[0, 1)`.
+#[inline]
 pub fn owen_sobol_1d(index: u32, seed: u64) -> f32 {
-    owen_sobol_2d(index, seed).0
+    let s = mix64(seed);
+    unit_f32(owen_scramble_reversed(nested_uniform_shuffle(index, s as u32), (s >> 32) as u32))
 }
 
 /// Owen's scramble of the digits of a number given with its bits reversed; returns it in normal order.
@@ -92,6 +95,11 @@ mod tests {
         for i in (0..2000).chain((0..2000).map(|i: u32| i.wrapping_mul(0x9e37_79b9))) {
             assert_eq!(sobol_second_reversed(i).reverse_bits(), sobol_second_simple(i));
         }
+    }
+
+    #[test]
+    fn one_number_is_the_first_of_the_pair() {
+        assert!((0..1000).all(|i| owen_sobol_1d(i, 7) == owen_sobol_2d(i, 7).0));
     }
 
     #[test]

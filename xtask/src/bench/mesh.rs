@@ -37,22 +37,20 @@ pub fn lit(folder: &Path, n: usize) -> Result<Case, String> {
     Ok(case)
 }
 
-/// The mesh of [`lit`] under a plain sky, of rough metal, so that paths go on from surface to surface: eight bounces, 16 samples.
+/// The mesh of [`lit`] under a plain sky, matte, so that light goes on from surface to surface: eight bounces, 16 samples.
 pub fn under_a_sky(folder: &Path, n: usize) -> Result<Case, String> {
     let case = Case { name: "sky", folder: folder.into(), has_pov: false, mitsuba: &[SCALAR, COMPILED] };
     let (points, faces) = displaced_sphere(n);
     write_ply(&folder.join("mesh.ply"), &points, &faces).map_err(|e| e.to_string())?;
     let toml = "[film]\nwidth = 512\nheight = 512\nfilter = \"box\"\n[sampler]\nsamples = 16\n\
-         [integrator]\ntype = \"whitted\"\nmax_depth = 8\nglossy_samples = 1\nmin_contribution = 0\n[background]\ncolor = [0.35, 0.5, 0.7]\n\
+         [integrator]\ntype = \"path\"\nmax_depth = 8\nroulette_depth = 8\n[background]\ncolor = [0.35, 0.5, 0.7]\n\
          [cameras.main]\ntype = \"perspective\"\nposition = [1.2, 1.4, 2.6]\nlook_at = [0, 0, 0]\nfov = 45\nfov_axis = \"horizontal\"\n\
-         [materials.metal]\ntype = \"rough_mirror\"\nreflectance = 0.7\nroughness = 1.0\n\
-         [objects.mesh]\ntype = \"mesh\"\nfile = \"mesh.ply\"\nmaterial = \"metal\"\n";
+         [materials.clay]\ntype = \"lambert\"\nreflectance = 0.7\n\
+         [objects.mesh]\ntype = \"mesh\"\nfile = \"mesh.ply\"\nmaterial = \"clay\"\n";
     let mut xml = mitsuba_head(8, 16, [1.2, 1.4, 2.6], [0.35, 0.5, 0.7]);
     xml.push_str(
         "<shape type=\"ply\"><string name=\"filename\" value=\"mesh.ply\"/><boolean name=\"face_normals\" value=\"true\"/>\n\
-         <bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><string name=\"material\" value=\"none\"/>\
-         <string name=\"distribution\" value=\"ggx\"/><float name=\"alpha\" value=\"1\"/>\
-         <rgb name=\"specular_reflectance\" value=\"0.7\"/></bsdf></bsdf></shape>\n</scene>\n",
+         <bsdf type=\"twosided\"><bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.7\"/></bsdf></bsdf></shape>\n</scene>\n",
     );
     write(&case, "toml", toml)?;
     write(&case, "xml", &xml)?;

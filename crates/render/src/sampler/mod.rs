@@ -102,7 +102,10 @@ impl Sampler {
 
     /// One number in `[0, 1)` for `purpose`.
     pub fn one(&self, purpose: u64) -> f32 {
-        self.pair(purpose).0
+        match self.kind {
+            SamplerKind::Sobol => sobol::one(self.index, combine(self.pixel_seed, purpose)),
+            _ => self.pair(purpose).0,
+        }
     }
 
     /// A hash that names this sample: for decisions that are no sequence (opacity).

@@ -17,7 +17,7 @@
 //! # References
 //! Owen 1995; Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4).
 
-use kirkas_geometry::low_discrepancy::owen_sobol_2d;
+use kirkas_geometry::low_discrepancy::{owen_sobol_1d, owen_sobol_2d};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Kind, ParamSpec, TypeSpec};
 
@@ -55,4 +55,9 @@ pub const SPEC: TypeSpec =
 
 pub(super) fn pair(index: u32, seed: u64) -> (f32, f32) {
     owen_sobol_2d(index, seed)
+}
+
+/// The first of the pair, sooner.
+pub(super) fn one(index: u32, seed: u64) -> f32 {
+    owen_sobol_1d(index, seed)
 }
