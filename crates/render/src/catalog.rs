@@ -1,6 +1,6 @@
 //! Everything that can be said in a scene: the lists of all kinds, put together.
 
-use crate::{background, camera, film, integrators, lights, materials, sampler, shapes, textures};
+use crate::{background, camera, film, integrators, lights, materials, media, sampler, shapes, textures};
 use kirkas_accel::AccelKind;
 use kirkas_scene::{Catalog, Kind, TypeSpec};
 
@@ -89,15 +89,19 @@ pub fn catalog() -> Catalog {
     types.extend(camera::CAMERAS.iter().copied());
     types.extend(lights::LIGHTS);
     types.extend(textures::TEXTURES.iter().copied());
+    types.extend(kirkas_optics::phase::SPECS);
+    types.extend(media::MEDIA.iter().copied());
     types.extend(kirkas_optics::SPECS);
     types.extend(shapes::SHAPES.iter().map(|s| s.spec));
     types.extend([&shapes::GROUP, &shapes::INSTANCE]);
     Catalog {
         types,
         common: vec![
+            (Kind::Background, background::COMMON),
             (Kind::Camera, camera::COMMON),
             (Kind::Light, lights::COMMON),
             (Kind::Texture, textures::COMMON),
+            (Kind::Medium, media::COMMON),
             (Kind::Material, materials::COMMON),
             (Kind::Object, shapes::COMMON),
         ],

@@ -15,6 +15,7 @@ use crate::lights::collect::{add_area_lights, scene_radius};
 use crate::lights::pick::LightPicker;
 use crate::lights::{Lamp, LightEntry, ambient_radiance};
 use crate::materials::Material;
+use crate::media::Volume;
 use crate::placement::{PlacedPart, Placement, place_objects};
 use crate::sampler::{SamplerKind, frame_seed};
 use crate::scene::{PRIMARY, PartInfo, Scene};
@@ -112,7 +113,7 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     let film = film_layout(&singles.params(Kind::Film), options).map_err(|d| vec![d])?;
     let frames_per_second = singles.params(Kind::Film).number("frames_per_second");
     let time = options.frame.map(|n| frame_time(n, frames_per_second));
-    let scene = compile(description, &catalog, assets, &singles, (film.size, time), &mut warnings)?;
+    let mut scene = compile(description, &catalog, assets, &singles, (film.size, time), &mut warnings)?;
     let (p, s) = (singles.params(Kind::Film), singles.params(Kind::Sampler));
     let filter =
         Filter::new(p.text("filter").unwrap_or("gaussian"), p.optional_number("filter_radius").map(|r| r as f32));
@@ -133,6 +134,13 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
                 format!("`{chosen}` ignores ambient lights: it finds indirect light itself"),
             )
             .help("remove them, or choose `[integrator] type = \"whitted\"`"),
+        );
+    }
+    if !scene.volumes.is_empty() && !integrator.knows_media {
+        scene.forget_media();
+        warnings.push(
+            Diagnostic::warning("no-media", format!("`{chosen}` sees no media: light goes straight through them"))
+                .help("choose `[integrator] type = \"path\"`"),
         );
     }
     let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
@@ -239,13 +247,20 @@ fn compile(
     let color = singles.params(Kind::Film).text("color").and_then(ColorMode::from_name).unwrap_or_default();
     let palette = palette(d, catalog, assets, color)?;
 
-    // Textures and materials, by name.
+    // Media, textures and materials, by name.
+    let medium_number = |name: &str| d.all(Kind::Medium).iter().position(|e| e.name.text == name).map(|n| n as u32);
+    let mut volumes = Volume::compile_all(d, catalog, &palette, assets).map_err(|d| vec![d])?;
     let textures = Textures::compile(d, catalog, assets)?;
     let params = |kind, entity| Params::new(entity, kind, catalog).expect("the description was validated");
     let materials: Vec<Material> = d
         .all(Kind::Material)
         .iter()
-        .filter_map(|e| Material::new(&params(Kind::Material, e), textures.names(), &palette))
+        .filter_map(|e| {
+            let interior = e.params.get("interior").and_then(|n| n.text()).and_then(medium_number);
+            let mut material = Material::new(&params(Kind::Material, e), textures.names(), &palette)?;
+            material.interior = interior;
+            Some(material)
+        })
         .collect();
 
     // The camera.
@@ -255,6 +270,11 @@ fn compile(
     // Objects: parts in the world, aggregates, and where they are placed.
     let mut groups = Groups::default();
     let background_group = groups.number("background");
+    for (volume, entity) in volumes.iter_mut().zip(d.all(Kind::Medium)) {
+        if volume.shines() {
+            volume.group = groups.number(&entity.name.text);
+        }
+    }
     let placement = place_objects(d, catalog, assets, &palette, textures, materials, &mut groups)?;
     let Placement { mut world, aggregates, mut instances, materials, textures, object_names } = placement;
 
@@ -324,7 +344,11 @@ fn compile(
     };
     let accel = Accel::build(kind, scene_geometry, &Threads).map_err(bad_geometry)?;
 
-    if lights.is_empty() && ambient.is_empty() && !materials.iter().any(|m| m.emission.is_some()) {
+    if lights.is_empty()
+        && ambient.is_empty()
+        && !volumes.iter().any(Volume::shines)
+        && !materials.iter().any(|m| m.emission.is_some())
+    {
         warnings.push(
             Diagnostic::warning("no-light", "nothing in the scene shines, so the picture is black")
                 .help("add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour"),
@@ -346,6 +370,7 @@ fn compile(
     }
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
+    let has_hulls = materials.iter().any(|m| m.is_hull);
     let scene = Scene {
         color,
         disperses: materials.iter().any(|m| m.medium.as_ref().is_some_and(|x| x.ior.is_dispersive())),
@@ -362,6 +387,9 @@ fn compile(
         background_light,
         background_group,
         camera,
+        space: singles.params(Kind::Background).text("medium").and_then(medium_number),
+        has_hulls,
+        volumes,
         camera_media: MediumStack::EMPTY,
         groups: groups.0,
         object_names,

@@ -3,7 +3,8 @@
 //! Nothing here changes what a sample is: flocks of any size give the same bits, because every sample adds integers.
 
 use crate::film::{AovSample, FinishedSample, Tile, fixed};
-use crate::integrators::{PathState, RayKind, ShadowRay, StepOutput};
+use crate::integrators::crossing;
+use crate::integrators::{Blocker, PathState, RayKind, ShadowRay, StepOutput};
 use crate::observe::{Observer, SampleId};
 use crate::render::Renderer;
 use crate::sampler::Sampler;
@@ -199,9 +200,7 @@ impl<'a, O: Observer> Flock<'a, O> {
         if let Some(s) = &surface {
             self.observer.hit(slot.id, &t.path, s);
         }
-        let is_seen = |s: &SurfaceHit| {
-            scene.material(s).medium.is_none() || !scene.is_covered(&t.path.media, s.material, s.is_front)
-        };
+        let is_seen = |s: &SurfaceHit| !crossing::is_covered(scene, &t.path, s);
         let looks = self.renderer.keeps_aovs && t.path.kind == RayKind::Camera && slot.aov.is_none();
         if looks && surface.as_ref().is_none_or(is_seen) {
             slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(&t.path, s)));
@@ -234,13 +233,13 @@ impl<'a, O: Observer> Flock<'a, O> {
             self.statistics.shadow_rays += shadows.len() as u64;
 
             // Plain ones want a yes or no; filtered ones walk from surface to surface.
-            if shadows.iter().any(|(s, _)| s.is_filtered) {
+            if shadows.iter().any(|(s, _)| s.blocked_by != Blocker::Anything) {
                 self.find_hits(self.rays.len());
                 let mut next = Vec::new();
                 for (i, (s, slot)) in shadows.drain(..).enumerate() {
                     match self.hits[i] {
-                        None => self.answer(&ShadowRay { light: scene.arrived(&s), ..s }, slot, false),
-                        Some(hit) => match scene.weakened(&s, &hit) {
+                        None => self.answer(&ShadowRay { light: scene.arrived(&s, self.keys[i]), ..s }, slot, false),
+                        Some(hit) => match scene.weakened(&s, &hit, self.keys[i]) {
                             Some(on) => next.push((on, slot)),
                             None => self.answer(&s, slot, true),
                         },

@@ -16,6 +16,7 @@ pub mod frames;
 pub mod integrators;
 pub mod lights;
 pub mod materials;
+pub mod media;
 pub mod observe;
 mod placement;
 pub mod render;

@@ -2,10 +2,11 @@
 
 use crate::background::Background;
 use crate::camera::Camera;
-use crate::integrators::{MediumStack, ShadowRay};
+use crate::integrators::{Blocker, MediumStack, ShadowRay};
 use crate::lights::pick::LightPicker;
 use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
+use crate::media::{Volume, Way};
 use crate::sampler::Sampler;
 use crate::shapes::Surface;
 use crate::textures::{TexturePoint, Textures};
@@ -13,7 +14,7 @@ use kirkas_accel::{Accel, Hit, HitFilter, NO_INSTANCE};
 use kirkas_geometry::hash::{combine, of_name, unit_f32};
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
-use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray};
+use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray, Vec3};
 use kirkas_optics::medium::transmittance;
 use kirkas_optics::{Bsdf, ColorMode, Index, Interface, Lanes, Light, Medium, Spectrum};
 use std::sync::Arc;
@@ -92,6 +93,12 @@ pub struct Scene {
     pub background_group: u32,
     /// The camera in use.
     pub camera: Camera,
+    /// All media.
+    pub volumes: Vec<Volume>,
+    /// The one that fills all space which no body fills, by number.
+    pub space: Option<u32>,
+    /// Some surfaces are hulls, which rays pass.
+    pub has_hulls: bool,
     /// Bodies that the camera is inside of.
     pub camera_media: MediumStack,
     /// Names of light groups.
@@ -136,22 +143,26 @@ impl SurfaceHit {
 
     /// The ray that asks whether a light's sample reaches this point.
     pub fn shadow_ray(&self, s: &LightSample, like: &Ray) -> Ray {
-        let origin = offset_origin(self.position, self.error, self.normal, s.direction);
-        let Some(target) = &s.target else {
-            return Ray {
-                origin,
-                direction: s.direction.as_vec3(),
-                t_min: 0.0,
-                t_max: f32::INFINITY,
-                mask: SECONDARY,
-                ..*like
-            };
-        };
-        // End clear of the light's own surface, short of it by the rounding error of direction and parameter.
-        let end = offset_origin(target.position, target.error, target.normal, -s.direction);
-        let direction = (end.as_dvec3() - origin.as_dvec3()).as_vec3();
-        Ray { origin, direction, t_min: 0.0, t_max: 1.0 - gamma(16), mask: SECONDARY, ..*like }
+        ray_to_light(offset_origin(self.position, self.error, self.normal, s.direction), s, like)
     }
+}
+
+/// The ray from `origin` that asks whether a light's sample reaches it, at the time of `like`.
+pub fn ray_to_light(origin: Vec3, s: &LightSample, like: &Ray) -> Ray {
+    let Some(target) = &s.target else {
+        return Ray {
+            origin,
+            direction: s.direction.as_vec3(),
+            t_min: 0.0,
+            t_max: f32::INFINITY,
+            mask: SECONDARY,
+            ..*like
+        };
+    };
+    // End clear of the light's own surface, short of it by the rounding error of direction and parameter.
+    let end = offset_origin(target.position, target.error, target.normal, -s.direction);
+    let direction = (end.as_dvec3() - origin.as_dvec3()).as_vec3();
+    Ray { origin, direction, t_min: 0.0, t_max: 1.0 - gamma(16), mask: SECONDARY, ..*like }
 }
 
 impl Scene {
@@ -342,20 +353,61 @@ impl Scene {
         }
     }
 
-    /// What is left of a filtered shadow ray's light on its last way, to the light.
-    pub fn arrived(&self, shadow: &ShadowRay) -> Light {
-        let length = if shadow.ray.t_max.is_finite() { shadow.ray.direction.length() } else { f32::INFINITY };
-        shadow.light * self.clearness(&shadow.lanes, &shadow.media, f64::from(length))
+    /// Leave out all media, for integrators that would see them only in part.
+    pub(crate) fn forget_media(&mut self) {
+        self.volumes.clear();
+        self.space = None;
+        self.materials.iter_mut().for_each(|m| m.interior = None);
     }
 
-    /// A filtered shadow ray behind the surface it met, tinted by what that lets through; `None` if it lets nothing through.
-    pub fn weakened(&self, shadow: &ShadowRay, hit: &Hit) -> Option<ShadowRay> {
+    /// What scatters in the space at a path's end.
+    pub fn volume_of(&self, media: &MediumStack) -> Option<&Volume> {
+        let number = match self.ruling(media) {
+            Some(body) => self.materials[body as usize].interior,
+            None => self.space,
+        };
+        number.map(|n| &self.volumes[n as usize])
+    }
+
+    /// What is left of light on this way through the body that rules in `media`: exactly, or on average over `key`.
+    pub fn transmittance(&self, lanes: &Lanes, media: &MediumStack, way: &Way, key: u64) -> Light {
+        let clear = self.clearness(lanes, media, way.length);
+        match self.volume_of(media) {
+            Some(volume) => clear * volume.transmittance(lanes, way, key),
+            None => clear,
+        }
+    }
+
+    /// What is left of a shadow ray's light, weakened as it goes, on its last way, to the light. `key` names its random numbers.
+    pub fn arrived(&self, shadow: &ShadowRay, key: u64) -> Light {
+        let end = if shadow.ray.t_max.is_finite() { 1.0 } else { f32::INFINITY };
+        shadow.light * self.left_of(shadow, end, key)
+    }
+
+    fn left_of(&self, shadow: &ShadowRay, t: f32, key: u64) -> Light {
+        match shadow.blocked_by {
+            Blocker::Anything => Light::splat(1.0),
+            Blocker::Opaque => {
+                self.clearness(&shadow.lanes, &shadow.media, f64::from(t * shadow.ray.direction.length()))
+            }
+            Blocker::AllButHulls => {
+                let key = combine(key, u64::from(shadow.passed));
+                self.transmittance(&shadow.lanes, &shadow.media, &Way::of_ray(&shadow.ray, t), key)
+            }
+        }
+    }
+
+    /// A shadow ray behind the surface it met, tinted by what that lets through; `None` if it lets nothing through.
+    pub fn weakened(&self, shadow: &ShadowRay, hit: &Hit, key: u64) -> Option<ShadowRay> {
         const MOST: u32 = 256;
         let s = self.surface(&shadow.ray, hit);
         let material = self.material(&s);
-        let tint = material.straight_transmittance(&shadow.lanes, &self.textures, &s.texture)?;
-        let way = f64::from(hit.t * shadow.ray.direction.length());
-        let mut light = shadow.light * self.clearness(&shadow.lanes, &shadow.media, way);
+        let tint = match shadow.blocked_by {
+            Blocker::Opaque => material.straight_transmittance(&shadow.lanes, &self.textures, &s.texture)?,
+            Blocker::AllButHulls if material.is_hull => Light::splat(1.0),
+            _ => return None,
+        };
+        let mut light = shadow.light * self.left_of(shadow, hit.t, key);
         if !self.is_covered(&shadow.media, s.material, s.is_front) {
             light *= tint;
         }

@@ -22,6 +22,10 @@ pub enum Kind {
     Light,
     /// Textures by name.
     Texture,
+    /// Phase functions by name: how the particles of media scatter.
+    Phase,
+    /// Media by name: what fills space.
+    Medium,
     /// Materials by name.
     Material,
     /// Shapes, groups and instances by name.
@@ -30,7 +34,7 @@ pub enum Kind {
 
 impl Kind {
     /// All of them, in the order in which they are written.
-    pub const ALL: [Kind; 10] = [
+    pub const ALL: [Kind; 12] = [
         Kind::Film,
         Kind::Sampler,
         Kind::Integrator,
@@ -39,6 +43,8 @@ impl Kind {
         Kind::Camera,
         Kind::Light,
         Kind::Texture,
+        Kind::Phase,
+        Kind::Medium,
         Kind::Material,
         Kind::Object,
     ];
@@ -54,6 +60,8 @@ impl Kind {
             Kind::Camera => "camera",
             Kind::Light => "light",
             Kind::Texture => "texture",
+            Kind::Phase => "phase",
+            Kind::Medium => "medium",
             Kind::Material => "material",
             Kind::Object => "object",
         }
@@ -65,6 +73,8 @@ impl Kind {
             Kind::Camera => "cameras",
             Kind::Light => "lights",
             Kind::Texture => "textures",
+            Kind::Phase => "phases",
+            Kind::Medium => "media",
             Kind::Material => "materials",
             Kind::Object => "objects",
             single => single.singular(),

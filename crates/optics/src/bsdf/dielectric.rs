@@ -14,6 +14,7 @@
 //! | `transmittance` | colour or texture, 0..1 | | 1 | tints the refraction; k_t with `constant` |
 //! | `absorption` | colour | 1/scene unit | 0 | light inside fades as `exp(-absorption distance)` (Beer & Lambert) |
 //! | `priority` | whole number | | 0 | among overlapping insides the highest wins |
+//! | `interior` | medium | | none | what scatters inside |
 //!
 //! ## Example
 //!
@@ -40,6 +41,7 @@
 //! (radiance over n^2). C. M. Schmidt & B. Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002.
 
 use super::boundary::{DeltaPair, Fresnel, Split, pick};
+use super::hull::INTERIOR;
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
 use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
@@ -50,7 +52,7 @@ pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "dielectric",
     doc: "A smooth clear boundary: glass, water, diamond.",
-    params: &[IOR, FRESNEL, REFLECTANCE_ROW, TRANSMITTANCE_ROW, ABSORPTION, PRIORITY],
+    params: &[IOR, FRESNEL, REFLECTANCE_ROW, TRANSMITTANCE_ROW, ABSORPTION, PRIORITY, INTERIOR],
 };
 pub(super) const IOR: ParamSpec = ParamSpec::new(
     "ior",

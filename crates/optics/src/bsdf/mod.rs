@@ -26,6 +26,7 @@ pub mod blinn_phong;
 pub mod conductor;
 pub mod dielectric;
 pub mod emitter;
+pub mod hull;
 pub mod lambert;
 pub mod mirror;
 pub mod phong;
@@ -52,6 +53,7 @@ models! {
     conductor Conductor,
     rough_conductor RoughConductor,
     emitter Emitter,
+    hull Hull,
 }
 
 /// What travels along `wo`.

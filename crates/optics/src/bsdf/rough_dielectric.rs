@@ -13,6 +13,7 @@
 //! | `transmittance` | colour or texture, 0..1 | | 1 | tints the refraction; k_t with `constant` |
 //! | `absorption` | colour | 1/scene unit | 0 | light inside fades as `exp(-absorption distance)` |
 //! | `priority` | whole number | | 0 | among overlapping insides the highest wins |
+//! | `interior` | medium | | none | what scatters inside |
 //! | `roughness` | number or texture, 0..1 | | 0.2 | alpha of GGX: 0.05 hazy, 0.5 frosted |
 //!
 //! ## Example
@@ -36,6 +37,7 @@
 
 use super::boundary::{Fresnel, Split, pick, square};
 use super::dielectric::{ABSORPTION, FRESNEL, IOR, PRIORITY, REFLECTANCE_ROW, TRANSMITTANCE_ROW, read_medium};
+use super::hull::INTERIOR;
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
 use crate::fresnel::{reflect, refract};
 use crate::microfacet::Ggx;
@@ -57,6 +59,7 @@ pub const SPEC: TypeSpec = TypeSpec {
         ABSORPTION,
         PRIORITY,
         ParamSpec::number_texture("roughness", 0.2, UNIT, "alpha of GGX"),
+        INTERIOR,
     ],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");

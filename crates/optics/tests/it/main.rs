@@ -9,6 +9,7 @@ mod indices;
 mod lanes;
 mod microfacet;
 mod models;
+mod phase;
 mod spectrum;
 mod values;
 

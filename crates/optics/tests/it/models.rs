@@ -129,6 +129,7 @@ fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
             (vec![n("intensity", 5.0)], 1.0),
             (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
         ],
+        "hull" => vec![(vec![], 1.0), (vec![], 1.33), (vec![("priority", Value::Int(3))], 1.0)],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }
@@ -167,7 +168,8 @@ fn the_list_holds_each_model_once_with_the_rows_of_the_catalogue() {
             "rough_dielectric",
             "conductor",
             "rough_conductor",
-            "emitter"
+            "emitter",
+            "hull"
         ]
     );
     assert!(SPECS.iter().all(|s| s.kind == Kind::Material && !s.doc.is_empty()));
@@ -176,8 +178,9 @@ fn the_list_holds_each_model_once_with_the_rows_of_the_catalogue() {
     let phong =
         ["diffuse", "specular", "exponent", "form", "ambient", "reflect", "transmit", "ior", "fresnel", "priority"];
     assert_eq!((rows(1), rows(2)), (phong.to_vec(), phong.to_vec()));
-    assert_eq!(rows(4), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority"]);
-    assert_eq!(rows(6), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "roughness"]);
+    assert_eq!(rows(4), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "interior"]);
+    let rough = ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "roughness", "interior"];
+    assert_eq!(rows(6), rough);
     let textured: Vec<&str> = texture_rows(&SPECS[1]).map(|r| r.name).collect();
     assert_eq!(textured, ["diffuse", "specular", "exponent", "ambient", "reflect", "transmit"]);
 }

@@ -17,11 +17,19 @@ use gradient::GradientBackground;
 use image::ImageBackground;
 use kirkas_geometry::{DVec3, Vec3};
 use kirkas_optics::{Lanes, Light, Palette};
-use kirkas_scene::{Assets, Diagnostic, Params, TypeSpec};
+use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
 use sun_sky::SunSky;
 
 /// Every background type.
 pub const BACKGROUNDS: &[&TypeSpec] = &[&gradient::CONSTANT, &gradient::GRADIENT, &image::SPEC, &sun_sky::SPEC];
+
+/// What every background takes.
+pub const COMMON: &[ParamSpec] = &[ParamSpec::new(
+    "medium",
+    ParamType::Reference(Kind::Medium),
+    Fallback::Absent,
+    "Medium that fills all space which no body fills; the background shines through it from infinitely far, so through any fog not at all.",
+)];
 
 /// A compiled background.
 #[derive(Clone, Debug)]

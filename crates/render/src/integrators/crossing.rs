@@ -1,17 +1,20 @@
 //! What a surface does to a path besides scattering: bodies that are entered and left, boundaries that others cover, and sides
 //! that a shading normal gets wrong. Every integrator does these alike.
 
-use super::{MediumStack, PathState};
-use crate::scene::{Scene, SurfaceHit};
-use kirkas_geometry::DVec3;
-use kirkas_optics::{Bsdf, Lobe};
+use super::{Blocker, MediumStack, PathState, ShadowRay};
+use crate::media::Way;
+use crate::sampler::Sampler;
+use crate::scene::{AlphaFilter, Scene, SurfaceHit};
+use kirkas_geometry::{DVec3, Ray};
+use kirkas_optics::{Bsdf, Light, Lobe};
 
 /// Covered boundaries passed in a row before a path is given up.
 const MOST_PASSED: u32 = 256;
 
-/// True when the surface is a boundary that lies inside a body of higher rank: then it is not there.
+/// True when the surface is not there: a hull, or a boundary that lies inside a body of higher rank.
 pub fn is_covered(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> bool {
-    scene.material(hit).medium.is_some() && scene.is_covered(&path.media, hit.material, hit.is_front)
+    let material = scene.material(hit);
+    material.is_hull || material.medium.is_some() && scene.is_covered(&path.media, hit.material, hit.is_front)
 }
 
 /// The path behind a covered boundary; `None` when it has passed too many.
@@ -23,6 +26,37 @@ pub fn passed(path: &PathState, hit: &SurfaceHit) -> Option<PathState> {
         passed: path.passed + 1,
         travelled: path.travelled + hit.t * path.ray.direction.length(),
         ..*path
+    })
+}
+
+/// The ray along `ray` that asks whether `light` arrives from lamp number `lamp`, through these bodies; `None` if there is no light
+/// to ask for. What fades light on its way does so now if it stays in one body, else as it goes.
+pub fn ask(
+    scene: &Scene,
+    path: &PathState,
+    sampler: &Sampler,
+    ray: Ray,
+    media: MediumStack,
+    light: Light,
+    lamp: u32,
+) -> Option<ShadowRay> {
+    let (blocked_by, light) = if scene.has_hulls {
+        (Blocker::AllButHulls, light)
+    } else {
+        let key = AlphaFilter::shadow_key(sampler, path.branch);
+        let way = Way::of_ray(&ray, ray.t_max.min(if ray.t_max.is_finite() { 1.0 } else { f32::INFINITY }));
+        (Blocker::Anything, light * scene.transmittance(&path.lanes, &media, &way, key))
+    };
+    (!light.is_black()).then(|| ShadowRay {
+        ray,
+        lanes: path.lanes,
+        light,
+        group: scene.lights[lamp as usize].group,
+        branch: path.branch,
+        lamp,
+        blocked_by,
+        media,
+        passed: 0,
     })
 }
 

@@ -2,6 +2,7 @@
 //! and which rays go on. One driver moves the rays in flocks, so that the kernel always has many in flight.
 
 pub mod crossing;
+mod particle;
 pub mod path;
 pub mod path_simple;
 pub mod whitted;
@@ -15,13 +16,24 @@ use kirkas_scene::{Params, TypeSpec};
 
 /// Every integrator type.
 pub const INTEGRATORS: &[IntegratorType] = &[
-    IntegratorType { spec: &path::SPEC, build: |p| Box::new(path::Path::new(p)), knows_ambient: false },
+    IntegratorType {
+        spec: &path::SPEC,
+        build: |p| Box::new(path::Path::new(p)),
+        knows_ambient: false,
+        knows_media: true,
+    },
     IntegratorType {
         spec: &path_simple::SPEC,
         build: |p| Box::new(path_simple::PathSimple::new(p)),
         knows_ambient: false,
+        knows_media: true,
     },
-    IntegratorType { spec: &whitted::SPEC, build: |p| Box::new(whitted::Whitted::new(p)), knows_ambient: true },
+    IntegratorType {
+        spec: &whitted::SPEC,
+        build: |p| Box::new(whitted::Whitted::new(p)),
+        knows_ambient: true,
+        knows_media: false,
+    },
 ];
 
 /// One entry of the list of integrators.
@@ -32,6 +44,8 @@ pub struct IntegratorType {
     pub build: fn(&Params) -> Box<dyn Integrator>,
     /// It adds ambient lights.
     pub knows_ambient: bool,
+    /// It follows light through media that scatter.
+    pub knows_media: bool,
 }
 
 /// Closed bodies that a path is inside of.
@@ -82,7 +96,7 @@ pub enum RayKind {
     Refracted,
     /// One of several around a mirrored or refracted direction.
     Glossy,
-    /// From a matte surface.
+    /// From a matte surface, or from within a medium.
     Diffuse,
 }
 
@@ -122,6 +136,17 @@ pub struct LastVertex {
     pub pdf: f32,
 }
 
+/// What stops a ray that asks whether light arrives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blocker {
+    /// Any surface: its light is already weakened by all that fills its way.
+    Anything,
+    /// Any surface but hulls: its light is weakened as it goes.
+    AllButHulls,
+    /// What is not clear: clear surfaces tint its light, without bending it, and it is weakened as it goes.
+    Opaque,
+}
+
 /// A ray that asks whether light arrives.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowRay {
@@ -137,8 +162,8 @@ pub struct ShadowRay {
     pub branch: u64,
     /// The light, by number.
     pub lamp: u32,
-    /// Transparent surfaces weaken it instead of blocking.
-    pub is_filtered: bool,
+    /// What blocks it.
+    pub blocked_by: Blocker,
     /// Bodies it is inside of.
     pub media: MediumStack,
     /// Surfaces it has been weakened by.

@@ -22,8 +22,10 @@
 //! Lights with Adaptive Tree Splitting"; Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray
 //! Traced Images".
 
+use super::particle::{self, Particle};
 use super::{Integrator, LastVertex, PathState, RayKind, ShadowRay, StepOutput, crossing};
 use crate::lights::pick::SELECTION;
+use crate::media::{FlightEnd, Way};
 use crate::observe::PathEnd;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -70,14 +72,31 @@ impl Path {
 
 impl Integrator for Path {
     fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput) {
+        // Fly through the medium, and scatter in it or come out.
+        let mut path = *path;
+        if let Some(volume) = scene.volume_of(&path.media) {
+            let way = Way::of_ray(&path.ray, hit.map_or(f32::INFINITY, |h| h.t));
+            let flight = particle::fly(volume, &path, &way, sampler);
+            if !flight.emitted.is_black() {
+                out.contributions.push((path.throughput * flight.emitted, volume.group));
+            }
+            match flight.end {
+                FlightEnd::Passed(weight) => path.throughput *= weight,
+                FlightEnd::Scattered { distance, weight } => {
+                    path.throughput *= weight * scene.clearness(&path.lanes, &path.media, distance);
+                    self.scatter(scene, &path, &Particle::new(volume, &path, way.at(distance)), sampler, out);
+                    return;
+                }
+            }
+        }
+
         // What left the scene sees the background.
         let Some(hit) = hit else {
-            self.escape(scene, path, out);
+            self.escape(scene, &path, out);
             return;
         };
 
         // Weaken the path by the body it went through.
-        let mut path = *path;
         path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
 
         // Pass boundaries that another body covers.
@@ -135,6 +154,19 @@ impl Path {
         out.end = Some(PathEnd::Escaped);
     }
 
+    /// Ask a light from within a medium, and go on.
+    fn scatter(&self, scene: &Scene, path: &PathState, particle: &Particle, sampler: &Sampler, out: &mut StepOutput) {
+        if path.depth >= self.max_depth || path.throughput.is_black() {
+            out.end = Some(PathEnd::Depth);
+            return;
+        }
+        out.shadow_rays.extend(particle.ask_light(scene, path, sampler));
+        match particle.go_on(path, sampler) {
+            Some(next) => self.play_roulette(scene, next, sampler, out),
+            None => out.end = Some(PathEnd::Absorbed),
+        }
+    }
+
     /// Send the path on, or end it by chance.
     fn play_roulette(&self, scene: &Scene, mut next: PathState, sampler: &Sampler, out: &mut StepOutput) {
         if next.depth >= self.roulette_depth {
@@ -160,7 +192,7 @@ impl LastVertex {
 }
 
 /// The weight of what was found with density `own` and could have been with density `other` (Veach 1997, equation 9.13).
-fn power_heuristic(own: f32, other: f32) -> f32 {
+pub(super) fn power_heuristic(own: f32, other: f32) -> f32 {
     let ratio = other / own;
     1.0 / (1.0 + ratio * ratio)
 }
@@ -209,19 +241,8 @@ impl<'a> Vertex<'a> {
             false => 1.0,
         };
         let media = crossing::media_towards(scene, &path.media, hit, s.direction);
-        let clear = scene.clearness(&path.lanes, &media, s.distance(hit.position));
-        let light_found = path.throughput * f * s.light * clear * (wi.z.abs() * weight / probability);
-        (!light_found.is_black()).then(|| ShadowRay {
-            ray: hit.shadow_ray(&s, &path.ray),
-            lanes: path.lanes,
-            light: light_found,
-            group: light.group,
-            branch: path.branch,
-            lamp: number,
-            is_filtered: false,
-            media,
-            passed: 0,
-        })
+        let light = path.throughput * f * s.light * (wi.z.abs() * weight / probability);
+        crossing::ask(scene, path, sampler, hit.shadow_ray(&s, &path.ray), media, light, number)
     }
 
     /// The path after this surface; `None` if the surface swallows it.
@@ -261,9 +282,9 @@ fn kind_of(lobe: Lobe) -> RayKind {
     }
 }
 
-const PICK: u64 = of_name("pick");
-const LIGHT: u64 = of_name("light");
-const LOBE: u64 = of_name("lobe");
-const DIRECTION: u64 = of_name("direction");
+pub(super) const PICK: u64 = of_name("pick");
+pub(super) const LIGHT: u64 = of_name("light");
+pub(super) const LOBE: u64 = of_name("lobe");
+pub(super) const DIRECTION: u64 = of_name("direction");
 const ROULETTE: u64 = of_name("roulette");
-const BOUNCE: u64 = of_name("bounce");
+pub(super) const BOUNCE: u64 = of_name("bounce");

@@ -23,7 +23,7 @@
 //! Whitted 1980, "An Improved Illumination Model for Shaded Display"; Cook, Porter & Carpenter 1984, "Distributed Ray
 //! Tracing"; Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced Images".
 
-use super::{Integrator, PathState, RayKind, ShadowRay, StepOutput, crossing};
+use super::{Blocker, Integrator, PathState, RayKind, ShadowRay, StepOutput, crossing};
 use crate::lights::Lamp;
 use crate::observe::PathEnd;
 use crate::sampler::Sampler;
@@ -212,11 +212,16 @@ impl Whitted {
                 }
                 let media = crossing::media_towards(scene, &path.media, hit, s.direction);
                 // What a straight ray meets weakens it as it goes; otherwise it stays in one body all the way.
-                let is_filtered = self.shadows == Shadows::Transparent;
-                let weight = if is_filtered {
-                    weight
-                } else {
-                    weight * scene.clearness(&path.lanes, &media, s.distance(hit.position))
+                let blocked_by = match self.shadows {
+                    Shadows::Transparent => Blocker::Opaque,
+                    Shadows::None => Blocker::Anything,
+                    _ if scene.has_hulls => Blocker::AllButHulls,
+                    _ => Blocker::Anything,
+                };
+                // What meets surfaces on its way is weakened as it goes; otherwise it stays in one body all the way.
+                let weight = match blocked_by {
+                    Blocker::Anything => weight * scene.clearness(&path.lanes, &media, s.distance(hit.position)),
+                    _ => weight,
                 };
                 if self.shadows == Shadows::None {
                     out.contributions.push((weight, light.group));
@@ -229,7 +234,7 @@ impl Whitted {
                     group: light.group,
                     branch: path.branch,
                     lamp: number as u32,
-                    is_filtered,
+                    blocked_by,
                     media,
                     passed: 0,
                 });

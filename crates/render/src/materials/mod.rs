@@ -30,6 +30,10 @@ pub struct Material {
     pub emission: Option<Emission>,
     /// What fills the body, if the surface bounds one.
     pub medium: Option<Medium>,
+    /// What scatters inside the body, by number among the scene's media.
+    pub interior: Option<u32>,
+    /// Rays go through its surface as if it were not there.
+    pub is_hull: bool,
     scales_radiance: bool,
 }
 
@@ -128,6 +132,8 @@ impl Material {
             emission: (params.spec().name == "emitter").then(|| Emission::new(params, names, palette)),
             scales_radiance: !is_constant,
             medium,
+            interior: None,
+            is_hull: params.spec().name == "hull",
             model,
         })
     }
@@ -163,6 +169,9 @@ impl Material {
     /// tint of transmission, without Fresnel or bending; `None` for surfaces that bound no body.
     pub fn straight_transmittance(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> Option<Light> {
         self.medium.as_ref()?;
+        if self.is_hull {
+            return Some(Light::splat(1.0));
+        }
         let named = |n: &str| self.rows.iter().find(|row| row.spec.name == n);
         let row = named("transmittance").or_else(|| named("transmit"))?;
         Some(row.at(lanes, textures, at))

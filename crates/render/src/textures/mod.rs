@@ -8,7 +8,7 @@ mod checker;
 mod image;
 mod marble;
 mod noise;
-mod perlin;
+pub(crate) mod perlin;
 mod references;
 mod wood;
 

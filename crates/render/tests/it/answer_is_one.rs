@@ -16,7 +16,7 @@ struct Scene {
     is_matte: bool,
 }
 
-const SCENES: [Scene; 7] = [
+const SCENES: [Scene; 8] = [
     Scene { name: "nothing before a white sky", body: "[background]\ncolor = 1\n", is_matte: false },
     Scene {
         name: "inside a lamp",
@@ -36,6 +36,11 @@ const SCENES: [Scene; 7] = [
     Scene {
         name: "perfect white under the sky",
         body: "[background]\ncolor = 1\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n[objects.ring]\ntype = \"torus\"\nmaterial = \"white\"\n",
+        is_matte: true,
+    },
+    Scene {
+        name: "a ball of mist that swallows nothing",
+        body: "[background]\ncolor = 1\n[materials.hull]\ntype = \"hull\"\ninterior = \"mist\"\n[objects.ball]\ntype = \"sphere\"\nmaterial = \"hull\"\n[media.mist]\ntype = \"homogeneous\"\nscattering = 1.5\nphase = \"lobe\"\n[phases.lobe]\ntype = \"henyey_greenstein\"\ng = 0.7\n",
         is_matte: true,
     },
     // rho / (1 - rho) I / (pi R^2) = 1 with rho = 1/2 and R = 20.

@@ -11,8 +11,13 @@ use kirkas_render::{Film, Options, Prepared, Rect, catalog};
 use kirkas_scene::Kind;
 
 const SCENE: &str = include_str!("scenes/everything.toml");
-const FILES: [(&str, &[u8]); 2] =
-    [("gem.obj", include_bytes!("scenes/gem.obj")), ("leaf.png", include_bytes!("scenes/leaf.png"))];
+/// Media, for integrators that know them.
+const MEDIA: &str = include_str!("scenes/media.toml");
+const FILES: [(&str, &[u8]); 3] = [
+    ("gem.obj", include_bytes!("scenes/gem.obj")),
+    ("leaf.png", include_bytes!("scenes/leaf.png")),
+    ("puff.vol", include_bytes!("scenes/puff.vol")),
+];
 
 /// A part that covers four tiles' corner, for tests of many samples.
 const CORNER: Rect = Rect { x0: 14, y0: 24, x1: 34, y1: 34 };
@@ -49,7 +54,7 @@ fn variants() -> [String; 4] {
             ("shadows = \"transparent\"\nglossy_samples = 2\n", ""),
             ("[sampler]", &format!("[sampler]\ntype = \"{sampler}\"")),
             ("light_groups = true", "light_groups = true\ncolor = \"spectral\""),
-        ])
+        ]) + MEDIA
     };
     [SCENE.to_string(), variant(&plain), traced("path", "halton"), traced("path_simple", "stratified")]
 }
@@ -78,7 +83,7 @@ fn everything_that_is_listed_is_in_the_scene() {
     let is_there = |what: &str| words.iter().any(|w| w.contains(what));
     for spec in catalog().types {
         let by_kind = match spec.kind {
-            Kind::Material | Kind::Light | Kind::Texture | Kind::Object => true,
+            Kind::Material | Kind::Light | Kind::Texture | Kind::Object | Kind::Medium | Kind::Phase => true,
             _ => false,
         };
         let missing_on_purpose = ["measured"].contains(&spec.name);

@@ -16,6 +16,7 @@ mod hostile;
 mod light_sampling;
 mod light_selection;
 mod manuals;
+mod media;
 mod numbers;
 mod observer;
 mod path;

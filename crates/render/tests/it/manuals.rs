@@ -8,8 +8,10 @@ use std::fs;
 use std::path::Path;
 
 /// Folders in which one file is one type, beside this crate's own.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 9] = [
     "../optics/src/bsdf",
+    "../optics/src/phase",
+    "src/media",
     "src/shapes",
     "src/lights",
     "src/textures",
@@ -51,7 +53,8 @@ fn every_manual_has_an_example_that_validates() {
             Err(e) => panic!("{file}: {:?}", e.diagnostics),
         };
         // An example may lean on things that it does not show.
-        let shown_elsewhere = ["unknown material `", "unknown texture `", "unknown object `"];
+        let shown_elsewhere =
+            ["unknown material `", "unknown texture `", "unknown object `", "unknown phase `", "unknown medium `"];
         for d in validate(&description, &catalog) {
             assert!(shown_elsewhere.iter().any(|s| d.message.starts_with(s)), "{file}: {}", d.message);
         }
