@@ -55,6 +55,7 @@ pub fn stats_json(
             "refracted": counted.refracted_rays,
             "glossy": counted.glossy_rays,
             "diffuse": counted.diffuse_rays,
+            "photon": counted.photon_rays,
             "shadow": counted.shadow_rays,
             "total": counted.rays(),
         },

@@ -59,7 +59,7 @@ impl Scene {
 }
 
 /// Bodies that a point is inside of: those whose boundary a ray from there first meets from within, in some direction.
-fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
+pub(crate) fn bodies_around(scene: &Scene, start: &Ray) -> MediumStack {
     let mut media = MediumStack::EMPTY;
     if scene.materials.iter().all(|m| m.medium.is_none()) {
         return media;

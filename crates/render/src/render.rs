@@ -5,13 +5,12 @@ use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
 use crate::film::{AovSample, Film, Tile};
 use crate::flock::Flock;
-use crate::integrators::{Integrator, PathState, RayKind};
+use crate::integrators::{Integrator, Pass, PathState, RayKind};
 use crate::observe::{Observer, SampleId};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{PRIMARY, Scene, SurfaceHit};
 use crate::statistics::Statistics;
 use kirkas_geometry::hash::of_name;
-use kirkas_optics::{ColorMode, Lanes};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -85,15 +84,19 @@ impl Renderer<'_> {
             if done >= samples.end {
                 break;
             }
+            let prepared = self.integrator.prepare_pass(self.scene, self.seed, self.resolution, done);
+            let longest = if prepared.is_some() { 1 } else { LONGEST_PASS };
+            let renderer = self.with_pass(prepared.as_ref());
+            statistics = prepared.as_ref().map_or(statistics, |p| statistics.plus(&p.counted));
             let to_round = self.target.map_or(u32::MAX, |t| t.next_round(taken) - taken);
-            let pass_end = done + taken.clamp(1, LONGEST_PASS).min(samples.end - done).min(to_round);
+            let pass_end = done + taken.clamp(1, longest).min(samples.end - done).min(to_round);
             let (tiles, at_once) = (film.tiles.len(), TILES_PER_THREAD * rayon::current_num_threads());
             for first in (0..tiles).step_by(at_once) {
                 let chunk = &mut film.tiles[first..(first + at_once).min(tiles)];
                 let counted = chunk
                     .par_iter_mut()
                     .map(|tile| {
-                        let s = self.render_tile(tile, samples.start, pass_end, &mut ());
+                        let s = renderer.render_tile(tile, samples.start, pass_end, &mut ());
                         control.progress(s.samples);
                         s
                     })
@@ -108,6 +111,11 @@ impl Renderer<'_> {
             }
         }
         statistics
+    }
+
+    /// The same with what its integrator prepared for one sample index.
+    fn with_pass<'b>(&'b self, pass: Option<&'b Pass>) -> Renderer<'b> {
+        Renderer { integrator: pass.map_or(self.integrator, |p| &*p.integrator), ..*self }
     }
 
     /// Stop what has samples enough; the fewest that a pixel which goes on has, if any does.
@@ -148,7 +156,11 @@ impl Renderer<'_> {
             aovs: Default::default(),
         };
         let mut film = Film::new(layout);
-        self.render_tile(&mut film.tiles[0], samples.start, samples.end, observer);
+        for sample in samples.clone() {
+            let prepared = self.integrator.prepare_pass(self.scene, self.seed, self.resolution, sample);
+            let tile = &mut film.tiles[0];
+            self.with_pass(prepared.as_ref()).render_tile(tile, samples.start, sample + 1, observer);
+        }
         film.tiles.swap_remove(0)
     }
 
@@ -163,20 +175,19 @@ impl Renderer<'_> {
         let place = self.filter.sample(sampler.pair(FILTER));
         let (open, close) = camera.shutter();
         let (uses_lens, uses_time) = (camera.uses_lens(), close > open);
+        let shared = self.integrator.shared();
+        let moment = || shared.map_or_else(|| sampler.one(TIME), |s| s.moment);
         let sample = CameraSample {
             film: (
                 f64::from(id.x) + 0.5 + f64::from(place.offset.0) + self.shift[0],
                 f64::from(id.y) + 0.5 + f64::from(place.offset.1) + self.shift[1],
             ),
             lens: if uses_lens { sampler.pair(LENS) } else { (0.5, 0.5) },
-            time: if uses_time { open + (close - open) * f64::from(sampler.one(TIME)) } else { open },
+            time: if uses_time { open + (close - open) * f64::from(moment()) } else { open },
         };
         let mut ray = camera.ray(&sample, self.resolution);
         ray.mask = PRIMARY;
-        let lanes = match self.scene.color {
-            ColorMode::Rgb if !self.scene.disperses => Lanes::RGB,
-            mode => mode.lanes(sampler.one(WAVELENGTH)),
-        };
+        let lanes = shared.map_or_else(|| self.scene.lanes(|| sampler.one(WAVELENGTH)), |s| s.lanes);
         let path = PathState {
             ray,
             lanes,

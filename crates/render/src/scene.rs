@@ -174,6 +174,14 @@ impl Scene {
         }
     }
 
+    /// The lanes of the path that `u` gives a number in `[0, 1)` for.
+    pub fn lanes(&self, u: impl FnOnce() -> f32) -> Lanes {
+        match self.color {
+            ColorMode::Rgb if !self.disperses => Lanes::RGB,
+            mode => mode.lanes(u()),
+        }
+    }
+
     /// What camera rays start with: 1, or 1 / n^2 inside a body, where all radiance is n^2 times brighter.
     pub fn camera_gain(&self, lanes: &Lanes) -> Light {
         match self.ruling(&self.camera_media) {

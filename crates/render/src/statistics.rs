@@ -17,6 +17,8 @@ pub struct Statistics {
     pub glossy_rays: u64,
     /// Rays from matte surfaces.
     pub diffuse_rays: u64,
+    /// Rays of light on its way from the lamps.
+    pub photon_rays: u64,
     /// Shadow rays.
     pub shadow_rays: u64,
     /// Rays that hit something.
@@ -33,7 +35,7 @@ impl Statistics {
     /// All rays.
     pub fn rays(&self) -> u64 {
         let bounced = self.reflected_rays + self.refracted_rays + self.glossy_rays + self.diffuse_rays;
-        self.camera_rays + bounced + self.shadow_rays
+        self.camera_rays + bounced + self.photon_rays + self.shadow_rays
     }
 
     /// Both together.
@@ -44,6 +46,7 @@ impl Statistics {
         self.refracted_rays += o.refracted_rays;
         self.glossy_rays += o.glossy_rays;
         self.diffuse_rays += o.diffuse_rays;
+        self.photon_rays += o.photon_rays;
         self.shadow_rays += o.shadow_rays;
         self.hits += o.hits;
         self.lens_samples += o.lens_samples;

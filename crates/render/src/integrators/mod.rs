@@ -5,6 +5,7 @@ pub mod crossing;
 mod particle;
 pub mod path;
 pub mod path_simple;
+pub mod photon;
 pub mod whitted;
 
 use crate::sampler::Sampler;
@@ -27,6 +28,12 @@ pub const INTEGRATORS: &[IntegratorType] = &[
         build: |p| Box::new(path_simple::PathSimple::new(p)),
         knows_ambient: false,
         knows_media: true,
+    },
+    IntegratorType {
+        spec: &photon::SPEC,
+        build: |p| Box::new(photon::Photon::new(p)),
+        knows_ambient: false,
+        knows_media: false,
     },
     IntegratorType {
         spec: &whitted::SPEC,
@@ -195,8 +202,35 @@ impl StepOutput {
     }
 }
 
+/// An integrator for one pass: one sample index of all pixels.
+pub struct Pass<'a> {
+    /// It takes the samples.
+    pub integrator: Box<dyn Integrator + 'a>,
+    /// Rays that were traced to make it.
+    pub counted: Statistics,
+}
+
+/// What all camera paths of a pass have in common, so that what was prepared for one of them fits all.
+#[derive(Clone, Copy, Debug)]
+pub struct Shared {
+    /// When, from 0 (the shutter opens) to 1 (it closes).
+    pub moment: f32,
+    /// The lanes that they start with.
+    pub lanes: Lanes,
+}
+
 /// One step of an integrator. Pure: the same arguments give the same output.
 pub trait Integrator: Sync {
+    /// For integrators that look at the whole scene before each pass: the one that takes sample number `pass` of every pixel.
+    fn prepare_pass<'a>(&self, _: &'a Scene, _seed: u64, _resolution: (u32, u32), _pass: u32) -> Option<Pass<'a>> {
+        None
+    }
+
+    /// What its camera paths have in common, if it is made for one pass.
+    fn shared(&self) -> Option<Shared> {
+        None
+    }
+
     /// `hit` is `None` where the ray left the scene.
     fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput);
 }

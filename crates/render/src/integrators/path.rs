@@ -48,7 +48,7 @@ pub(super) const MAX_DEPTH: ParamSpec = ParamSpec::integer(
     "Bounces between eye and lamp: 0 shows only what shines, 1 adds direct light.",
 )
 .unit("bounces");
-const ROULETTE_DEPTH: ParamSpec = ParamSpec::integer(
+pub(super) const ROULETTE_DEPTH: ParamSpec = ParamSpec::integer(
     "roulette_depth",
     4,
     (0.0, 1e6),
@@ -92,7 +92,7 @@ impl Integrator for Path {
 
         // What left the scene sees the background.
         let Some(hit) = hit else {
-            self.escape(scene, &path, out);
+            escape(scene, &path, out);
             return;
         };
 
@@ -106,17 +106,7 @@ impl Integrator for Path {
         }
 
         // A surface that shines is seen.
-        let emitted = scene.emitted(&path.lanes, hit);
-        if !emitted.is_black() {
-            let weight = match (&path.last, scene.light_of(hit)) {
-                (Some(last), Some(light)) => {
-                    let pdf = scene.light_pdf(light, hit, last.position, f64::from(path.ray.time));
-                    last.weight(scene, light, pdf)
-                }
-                _ => 1.0,
-            };
-            out.contributions.push((path.throughput * emitted * weight, hit.emission_group));
-        }
+        see_emission(scene, &path, hit, out);
         if path.depth >= self.max_depth {
             out.end = Some(PathEnd::Depth);
             return;
@@ -129,31 +119,13 @@ impl Integrator for Path {
             return;
         }
         if vertex.lobes.intersects(LobeSet::NON_DELTA) {
-            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler));
+            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::ALL));
         }
-        match vertex.go_on(scene, &path, sampler) {
-            Some(next) => self.play_roulette(scene, next, sampler, out),
-            None => out.end = Some(PathEnd::Absorbed),
-        }
+        vertex.send_on(scene, &path, sampler, LobeSet::ALL, self.roulette_depth, out);
     }
 }
 
 impl Path {
-    fn escape(&self, scene: &Scene, path: &PathState, out: &mut StepOutput) {
-        let sky = scene.background.radiance(&path.lanes, path.ray.direction)
-            * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
-        if !sky.is_black() {
-            let weight = match (&path.last, scene.background_light) {
-                (Some(last), Some(light)) => {
-                    last.weight(scene, light, scene.background_pdf(path.ray.direction.as_dvec3()))
-                }
-                _ => 1.0,
-            };
-            out.contributions.push((path.throughput * sky * weight, scene.background_group));
-        }
-        out.end = Some(PathEnd::Escaped);
-    }
-
     /// Ask a light from within a medium, and go on.
     fn scatter(&self, scene: &Scene, path: &PathState, particle: &Particle, sampler: &Sampler, out: &mut StepOutput) {
         if path.depth >= self.max_depth || path.throughput.is_black() {
@@ -162,22 +134,51 @@ impl Path {
         }
         out.shadow_rays.extend(particle.ask_light(scene, path, sampler));
         match particle.go_on(path, sampler) {
-            Some(next) => self.play_roulette(scene, next, sampler, out),
+            Some(next) => play_roulette(scene, next, sampler, self.roulette_depth, out),
             None => out.end = Some(PathEnd::Absorbed),
         }
     }
+}
 
-    /// Send the path on, or end it by chance.
-    fn play_roulette(&self, scene: &Scene, mut next: PathState, sampler: &Sampler, out: &mut StepOutput) {
-        if next.depth >= self.roulette_depth {
-            let chance = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
-            if sampler.one(combine(next.branch, ROULETTE)) >= chance {
-                out.end = Some(PathEnd::Roulette);
-                return;
-            }
-            next.throughput *= 1.0 / chance;
+/// Send the path on, or end it by chance.
+fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette_depth: u32, out: &mut StepOutput) {
+    if next.depth >= roulette_depth {
+        let chance = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
+        if sampler.one(combine(next.branch, ROULETTE)) >= chance {
+            out.end = Some(PathEnd::Roulette);
+            return;
         }
-        out.paths.push(next);
+        next.throughput *= 1.0 / chance;
+    }
+    out.paths.push(next);
+}
+
+/// The path sees the background and ends.
+pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
+    let sky = scene.background.radiance(&path.lanes, path.ray.direction)
+        * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
+    if !sky.is_black() {
+        let weight = match (&path.last, scene.background_light) {
+            (Some(last), Some(light)) => last.weight(scene, light, scene.background_pdf(path.ray.direction.as_dvec3())),
+            _ => 1.0,
+        };
+        out.contributions.push((path.throughput * sky * weight, scene.background_group));
+    }
+    out.end = Some(PathEnd::Escaped);
+}
+
+/// The path sees the surface shine, if it does.
+pub(super) fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
+    let emitted = scene.emitted(&path.lanes, hit);
+    if !emitted.is_black() {
+        let weight = match (&path.last, scene.light_of(hit)) {
+            (Some(last), Some(light)) => {
+                let pdf = scene.light_pdf(light, hit, last.position, f64::from(path.ray.time));
+                last.weight(scene, light, pdf)
+            }
+            _ => 1.0,
+        };
+        out.contributions.push((path.throughput * emitted * weight, hit.emission_group));
     }
 }
 
@@ -198,17 +199,18 @@ pub(super) fn power_heuristic(own: f32, other: f32) -> f32 {
 }
 
 /// A surface that a path has reached, with all that is asked of it twice.
-struct Vertex<'a> {
-    hit: &'a SurfaceHit,
-    bsdf: Bsdf,
-    lobes: LobeSet,
-    wo: Vec3,
+pub(super) struct Vertex<'a> {
+    pub(super) hit: &'a SurfaceHit,
+    pub(super) bsdf: Bsdf,
+    pub(super) lobes: LobeSet,
+    /// Back along the path, in the surface's frame.
+    pub(super) wo: Vec3,
     /// Of the side that light must come from; zero where it may come from both.
     normal: DVec3,
 }
 
 impl<'a> Vertex<'a> {
-    fn new(scene: &Scene, path: &PathState, hit: &'a SurfaceHit) -> Self {
+    pub(super) fn new(scene: &Scene, path: &PathState, hit: &'a SurfaceHit) -> Self {
         let bsdf = crossing::bsdf(scene, path, hit);
         let lobes = bsdf.lobes();
         let normal = match (lobes.intersects(LobeSet::TRANSMISSION), hit.is_front) {
@@ -219,8 +221,14 @@ impl<'a> Vertex<'a> {
         Vertex { hit, bsdf, lobes, wo: hit.frame.to_local(-path.ray.direction.normalize()), normal }
     }
 
-    /// One light, and what comes from it unless something is in the way.
-    fn ask_light(&self, scene: &Scene, path: &PathState, sampler: &Sampler) -> Option<ShadowRay> {
+    /// One light, and what comes from it unless something is in the way; weighted against a ray that `rivals` send.
+    pub(super) fn ask_light(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        rivals: LobeSet,
+    ) -> Option<ShadowRay> {
         let hit = self.hit;
         let u = if scene.lights.len() > 1 { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
         let (number, probability) = scene.picker.pick(hit.position, self.normal, u)?;
@@ -237,7 +245,7 @@ impl<'a> Vertex<'a> {
         }
         // Where no ray can hit the light, this is the only way to it.
         let weight = match s.pdf > 0.0 {
-            true => power_heuristic(probability * s.pdf, self.bsdf.pdf(self.wo, wi, LobeSet::ALL, Mode::Radiance)),
+            true => power_heuristic(probability * s.pdf, self.bsdf.pdf(self.wo, wi, rivals, Mode::Radiance)),
             false => 1.0,
         };
         let media = crossing::media_towards(scene, &path.media, hit, s.direction);
@@ -245,12 +253,34 @@ impl<'a> Vertex<'a> {
         crossing::ask(scene, path, sampler, hit.shadow_ray(&s, &path.ray), media, light, number)
     }
 
-    /// The path after this surface; `None` if the surface swallows it.
-    fn go_on(&self, scene: &Scene, path: &PathState, sampler: &Sampler) -> Option<PathState> {
+    /// Send the path on by one of `lobes`, or end it by chance.
+    pub(super) fn send_on(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        lobes: LobeSet,
+        roulette_depth: u32,
+        out: &mut StepOutput,
+    ) {
+        match self.go_on(scene, path, sampler, lobes) {
+            Some(next) => play_roulette(scene, next, sampler, roulette_depth, out),
+            None => out.end = Some(PathEnd::Absorbed),
+        }
+    }
+
+    /// The path after this surface by one of `lobes`; `None` if the surface swallows it.
+    pub(super) fn go_on(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        lobes: LobeSet,
+    ) -> Option<PathState> {
         let hit = self.hit;
         let u_lobe = sampler.one(combine(path.branch, LOBE));
         let u = sampler.pair(combine(path.branch, DIRECTION));
-        let s = self.bsdf.sample(self.wo, u_lobe, u, LobeSet::ALL, Mode::Radiance)?;
+        let s = self.bsdf.sample(self.wo, u_lobe, u, lobes, Mode::Radiance)?;
         let throughput: Light = path.throughput * s.weight();
         let direction = hit.frame.to_world(s.wi).as_dvec3().normalize();
         // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.

@@ -1,15 +1,17 @@
 //! Shining surfaces as lights: any shape with an `emitter` material. Sampled by solid angle where the shape knows how
 //! (spheres), else by area.
 
+use super::emit::EmittedRay;
 use super::tree::LightBounds;
 use super::{Cone, LightSample, Target};
 use crate::materials::Material;
 use crate::shapes::{AreaSample, Surface};
 use crate::textures::{TexturePoint, Textures};
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
-use kirkas_geometry::rounding::gamma;
+use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
-use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3};
+use kirkas_geometry::warp::square_to_cosine_hemisphere;
+use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame};
 use kirkas_optics::Lanes;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -75,6 +77,40 @@ impl AreaLight {
             light: radiance * (1.0 / pdf) as f32,
             pdf: pdf as f32,
         })
+    }
+
+    /// A ray that leaves it, evenly by area and by the cosine. `u` chooses where it starts, `v` where it goes.
+    pub fn emit(
+        &self,
+        lanes: &Lanes,
+        materials: &[Material],
+        textures: &Textures,
+        time: f64,
+        (u, v): ((f32, f32), (f32, f32)),
+    ) -> Option<EmittedRay> {
+        let material = &materials[self.material as usize];
+        let emission = material.emission.as_ref()?;
+        let mut s = self.surface.sample_area(u)?;
+        if let Some(m) = self.placement.as_ref().map(|p| p.at(time)) {
+            s = placed(s, &m);
+        }
+        // One half of the square for each side that shines.
+        let (side, x) = match (emission.two_sided, v.0 < 0.5) {
+            (false, _) => (1.0, v.0),
+            (true, true) => (1.0, 2.0 * v.0),
+            (true, false) => (-1.0, 2.0 * v.0 - 1.0),
+        };
+        let normal = s.normal * side;
+        let local = square_to_cosine_hemisphere((x, v.1));
+        let direction = Frame::from_z(normal.as_vec3()).to_world(local).as_dvec3().normalize();
+        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
+        let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
+        let sides = if emission.two_sided { 2.0 } else { 1.0 };
+        let power =
+            emission.radiance(lanes, textures, &at, self.per_power()) * (opacity * (PI * sides / s.pdf_area) as f32);
+        let error = s.position.abs() * f64::from(gamma(4));
+        let origin = offset_origin(s.position, error, s.normal, direction);
+        (direction.dot(normal) > 0.0 && power.is_finite()).then(|| EmittedRay::new(origin, direction, time, power))
     }
 
     /// The density per solid angle with which [`AreaLight::sample`] finds, from `from`, the point at `position` with the unit
@@ -150,15 +186,23 @@ impl AreaLight {
             };
         };
         let inverse = m.inverse();
-        let (mut s, pdf) = match self.surface.sample_toward(inverse.transform_point3(from), u) {
+        let (s, pdf) = match self.surface.sample_toward(inverse.transform_point3(from), u) {
             // Solid angles survive turning and even scaling only.
             Some((s, pdf)) if is_similarity(m) => (s, Some(pdf)),
             _ => (self.surface.sample_area(u)?, None),
         };
-        s.pdf_area /= area_element_growth(m, &inverse, s.normal);
-        s.normal = transform_normal(&inverse, s.normal).normalize();
-        s.position = m.transform_point3(s.position);
-        Some((s, pdf))
+        Some((placed(s, m), pdf))
+    }
+}
+
+/// A point of a surface that `m` puts elsewhere.
+fn placed(s: AreaSample, m: &DAffine3) -> AreaSample {
+    let inverse = m.inverse();
+    AreaSample {
+        pdf_area: s.pdf_area / area_element_growth(m, &inverse, s.normal),
+        normal: transform_normal(&inverse, s.normal).normalize(),
+        position: m.transform_point3(s.position),
+        ..s
     }
 }
 

@@ -1,10 +1,11 @@
 //! Gathers what shines besides the lights that are written as such: parts with an emitter material, and the background.
 
+use super::emit::BoundingSphere;
 use super::{AreaLight, Lamp, LightEntry, area_growth};
 use crate::materials::Material;
 use crate::placement::PlacedPart;
-use crate::scene::{InstanceInfo, NO_LIGHT};
-use kirkas_geometry::Bounds3;
+use crate::scene::{InstanceInfo, NO_LIGHT, PartInfo, Scene};
+use kirkas_geometry::{Bounds3, DVec3};
 use kirkas_scene::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -70,4 +71,22 @@ pub(crate) fn scene_radius(world: &[PlacedPart], aggregates: &[Vec<PlacedPart>],
     let placed = instances.iter().map(|i| local[i.aggregate].transformed(&i.world_from_part.at(0.0)));
     let all = placed.filter(Bounds3::is_finite).fold(around(world), |all, b| all.union(b));
     if all.is_empty() { 1.0 } else { 0.5 * (all.max.as_dvec3() - all.min.as_dvec3()).length() }
+}
+
+impl Scene {
+    /// Around everything bounded, where it stands at `time`.
+    pub(crate) fn bounding_sphere(&self, time: f64) -> BoundingSphere {
+        let around = |parts: &[PartInfo]| {
+            let bounds = parts.iter().map(|p| p.surface.bounds()).filter(Bounds3::is_finite);
+            bounds.fold(Bounds3::EMPTY, |all, b| all.union(b))
+        };
+        let local: Vec<Bounds3> = self.aggregates.iter().map(|a| around(a)).collect();
+        let placed = self.instances.iter().map(|i| local[i.aggregate].transformed(&i.world_from_part.at(time)));
+        let all = placed.filter(Bounds3::is_finite).fold(around(&self.world), |all, b| all.union(b));
+        if all.is_empty() {
+            return BoundingSphere { center: DVec3::ZERO, radius: 1.0 };
+        }
+        let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
+        BoundingSphere { center: 0.5 * (min + max), radius: 0.5 * (max - min).length() }
+    }
 }

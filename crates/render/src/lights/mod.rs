@@ -13,6 +13,7 @@ mod area;
 pub(crate) mod collect;
 mod cone;
 mod directional;
+pub mod emit;
 pub mod pick;
 mod point;
 mod spot;

@@ -18,6 +18,7 @@
 //! # References
 //! I / r^2: the same power crosses every sphere around the light.
 
+use super::emit::{EmittedRay, any_direction};
 use super::tree::LightBounds;
 use super::{LightSample, Target, units};
 use core::f64::consts::PI;
@@ -89,6 +90,14 @@ impl PointLight {
         let (direction, r) = towards(self.position, from)?;
         let light = self.intensity.at(lanes) * units::falloff(self.attenuation, r) as f32;
         Some(LightSample { direction, target: Some(point_target(self.position)), light, pdf: 0.0 })
+    }
+
+    /// A ray that leaves it.
+    pub fn emit(&self, lanes: &Lanes, time: f64, u: (f32, f32)) -> EmittedRay {
+        let (direction, solid_angle) = any_direction(u);
+        let power = self.intensity.scaled_at(lanes, solid_angle);
+        let straight = EmittedRay::new(self.position.as_vec3(), direction, time, power);
+        EmittedRay { attenuation: self.attenuation, ..straight }
     }
 }
 

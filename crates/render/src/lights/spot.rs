@@ -21,12 +21,14 @@
 //! # References
 //! Warn 1983, "Lighting Controls for Synthetic Images"; Pharr, Jakob & Humphreys 2023, section 12.2.1.
 
+use super::emit::EmittedRay;
 use super::point::{ATTENUATION, COLOR, INTENSITY, POSITION, UNIT, point_target, towards};
 use super::tree::LightBounds;
 use super::{Cone, LightSample, units};
 use core::f64::consts::PI;
 use kirkas_geometry::elementary::{acos, cos};
-use kirkas_geometry::{Bounds3, DVec3};
+use kirkas_geometry::warp::square_to_uniform_cone;
+use kirkas_geometry::{Bounds3, DVec3, Frame};
 use kirkas_optics::{Lanes, Palette, Spectrum};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -113,6 +115,16 @@ impl SpotLight {
         let light = self.intensity.at(lanes) * (share * units::falloff(self.attenuation, r)) as f32;
         let target = Some(point_target(self.position));
         (share > 0.0).then_some(LightSample { direction, target, light, pdf: 0.0 })
+    }
+
+    /// A ray that leaves it, drawn evenly from its outer cone.
+    pub fn emit(&self, lanes: &Lanes, time: f64, u: (f32, f32)) -> EmittedRay {
+        let height = 1.0 - self.cos_falloff;
+        let local = square_to_uniform_cone(u, height as f32);
+        let direction = Frame::from_z(self.axis.as_vec3()).to_world(local).as_dvec3().normalize();
+        let power = self.intensity.scaled_at(lanes, self.profile(f64::from(local.z)) * 2.0 * PI * height);
+        let straight = EmittedRay::new(self.position.as_vec3(), direction, time, power);
+        EmittedRay { attenuation: self.attenuation, ..straight }
     }
 }
 

@@ -20,6 +20,7 @@ mod media;
 mod numbers;
 mod observer;
 mod path;
+mod photon;
 mod samplers;
 mod scale;
 mod shapes;
