@@ -1,22 +1,27 @@
-//! The gallery: every lecture scene, rendered small into `docs/gallery`.
+//! The gallery: every scene of the folders `lecture` and `light`, rendered small into `docs/gallery`.
 
 use crate::sh::{self, Outcome, build_kirkas, root};
 use std::fs;
 use std::process::Command;
 
-/// One picture: its name, its scene, and what differs from the scene as it stands.
+/// One picture: its name, its scene's folder and name, and what differs from the scene as it stands.
 struct Picture {
     name: &'static str,
+    folder: &'static str,
     scene: &'static str,
     options: &'static [&'static str],
 }
 
 const fn plain(name: &'static str) -> Picture {
-    Picture { name, scene: name, options: &[] }
+    variant(name, name, &[])
 }
 
 const fn variant(name: &'static str, scene: &'static str, options: &'static [&'static str]) -> Picture {
-    Picture { name, scene, options }
+    Picture { name, folder: "lecture", scene, options }
+}
+
+const fn light(name: &'static str, options: &'static [&'static str]) -> Picture {
+    Picture { name, folder: "light", scene: name, options }
 }
 
 /// Every picture, in the order of the lecture.
@@ -64,6 +69,15 @@ const PICTURES: &[Picture] = &[
     plain("textures"),
     variant("instances", "instances", &["--size", "400x300"]),
     plain("alpha_mask"),
+    light("cornell_box", &["--size", "400x400"]),
+    light("sun_sky", &["--size", "480x300"]),
+    light("many_lights", &["--size", "480x300"]),
+    light("prism", &[]),
+    light("glass_caustics", &["--size", "480x315"]),
+    light("pool", &["--size", "480x315"]),
+    light("fog", &["--size", "480x300"]),
+    light("cloud", &[]),
+    light("rainbow", &["--size", "540x300"]),
 ];
 
 /// `cargo xtask gallery [NAME...]`
@@ -75,7 +89,7 @@ pub fn run(only: &[String]) -> Outcome {
         let mut c = Command::new(&kirkas);
         c.current_dir(root());
         c.arg("render")
-            .arg(format!("scenes/lecture/{}.toml", p.scene))
+            .arg(format!("scenes/{}/{}.toml", p.folder, p.scene))
             .arg("-o")
             .arg(folder.join(format!("{}.png", p.name)));
         c.args(p.options).arg("--quiet");
