@@ -86,7 +86,7 @@ fn values() {
 fn sections() {
     check(
         "[fillm]\nwidth = 1\n[material.red]\ntype='x'\n[xyzzy]",
-        "s.toml:1:2 \"fillm\": not known: unknown section `fillm`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `objects`, `sampler`, `textures`, `title`, `version`\ns.toml:3:2 \"material\": not known: unknown section `material`; did you mean `materials`? | write `materials`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `objects`, `sampler`, `textures`, `title`, `version`\ns.toml:5:2 \"xyzzy\": not known: unknown section `xyzzy` | write one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `objects`, `sampler`, `textures`, `title`, `version`",
+        "s.toml:1:2 \"fillm\": not known: unknown section `fillm`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `media`, `objects`, `phases`, `sampler`, `textures`, `title`, `version`\ns.toml:3:2 \"material\": not known: unknown section `material`; did you mean `materials`? | write `materials`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `media`, `objects`, `phases`, `sampler`, `textures`, `title`, `version`\ns.toml:5:2 \"xyzzy\": not known: unknown section `xyzzy` | write one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `media`, `objects`, `phases`, `sampler`, `textures`, `title`, `version`",
     );
     check(
         "version = 2",
@@ -142,7 +142,7 @@ fn overrides() {
     );
     check_override(
         "fim.width=3",
-        "-D:1:1 \"fim.width\": not known: unknown section `fim`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `film`, `integrator`, `lights`, `materials`, `objects`, `sampler`, `textures`",
+        "-D:1:1 \"fim.width\": not known: unknown section `fim`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `film`, `integrator`, `lights`, `materials`, `media`, `objects`, `phases`, `sampler`, `textures`",
     );
     check_override(
         "lights.lam.x=3",
@@ -207,7 +207,7 @@ fn an_included_file_tells_of_its_own_mistakes() {
     check_files(
         &[("s.toml", "include = 'b.toml'\n[fim]"), ("b.toml", "[film]\nwidth =")],
         "b.toml:2:8 \"\": here: a value is missing | write `name = value`\n\
-         s.toml:2:2 \"fim\": not known: unknown section `fim`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `objects`, `sampler`, `textures`, `title`, `version`",
+         s.toml:2:2 \"fim\": not known: unknown section `fim`; did you mean `film`? | write `film`, or one of: `accelerator`, `background`, `cameras`, `description`, `film`, `include`, `integrator`, `lights`, `materials`, `media`, `objects`, `phases`, `sampler`, `textures`, `title`, `version`",
     );
 }
 
