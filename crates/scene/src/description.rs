@@ -291,7 +291,7 @@ mod tests {
         d.add(Kind::Light, Entity::new("lamp", "point", Map::default().with("intensity", 1.0))).unwrap();
         d.set("lights.lamp.intensity", Span::NONE, Node::new(2.0)).unwrap();
         assert_eq!(d.find(Kind::Light, "lamp").unwrap().params.get("intensity").unwrap().number(), Some(2.0));
-        assert_eq!(d.single(Kind::Integrator).unwrap().type_name.text, "whitted");
+        assert_eq!(d.single(Kind::Integrator).unwrap().type_name.text, "path");
         let wrong = d.set("lights.lmap.intensity", Span::NONE, Node::new(2.0)).unwrap_err();
         assert_eq!(wrong.message, "unknown light `lmap`; did you mean `lamp`?");
         assert!(d.add(Kind::Light, Entity::new("lamp", "spot", Map::default())).is_err());
