@@ -76,7 +76,7 @@ const PICTURES: &[Picture] = &[
     light("glass_caustics", &["--size", "480x315", "--spp", "64"]),
     light("pool", &["--size", "480x315", "--spp", "48"]),
     light("fog", &["--size", "480x300", "--spp", "128"]),
-    light("cloud", &["--spp", "32"]),
+    light("cloud", &["--size", "480x320", "--spp", "16"]),
     light("rainbow", &["--size", "540x300", "--spp", "64"]),
 ];
 
