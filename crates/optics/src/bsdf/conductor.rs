@@ -28,9 +28,9 @@
 //! M. Born, E. Wolf, "Principles of Optics" (7th ed., 1999), section 14.2.
 
 use super::conductor_body::{Constants, IOR, K, Metal, REFLECTANCE, REFLECTANCE_ROW};
-use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter};
+use super::mirror_body::Smooth;
+use super::{Interface, Prepare};
 use crate::{Lanes, Light, Palette};
-use kirkas_geometry::Vec3;
 use kirkas_scene::{Kind, Params, TypeSpec};
 
 /// The table.
@@ -40,7 +40,6 @@ pub const SPEC: TypeSpec = TypeSpec {
     doc: "A smooth metal, by its complex refractive index.",
     params: &[IOR, K, REFLECTANCE_ROW],
 };
-const LOBE: Lobe = Lobe::DeltaReflection;
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
@@ -49,11 +48,7 @@ pub struct Prepared {
 }
 
 /// At a point.
-#[derive(Clone, Debug)]
-pub struct Conductor {
-    metal: Metal,
-    eta_o: f32,
-}
+pub type Conductor = Smooth<Metal>;
 
 impl Prepare for Prepared {
     type At = Conductor;
@@ -61,36 +56,6 @@ impl Prepare for Prepared {
         Prepared { constants: Constants::read(params, palette) }
     }
     fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> Conductor {
-        Conductor { metal: self.constants.at(lanes, slots[REFLECTANCE]), eta_o: interface.eta_above }
-    }
-}
-
-impl Conductor {
-    fn reflected(&self, wo: Vec3) -> Option<BsdfSample> {
-        let f = self.metal.reflectance(wo.z.abs(), self.eta_o);
-        let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-        (wo.z != 0.0 && !f.is_black()).then_some(BsdfSample { wi, f, pdf: 1.0, lobe: LOBE, eta: 1.0, disperses: false })
-    }
-}
-
-impl Scatter for Conductor {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(LOBE).when(!self.metal.is_black())
-    }
-    fn eval(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> Light {
-        Light::BLACK
-    }
-    fn pdf(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> f32 {
-        0.0
-    }
-    fn sample(&self, wo: Vec3, _: f32, _: (f32, f32), lobes: LobeSet, _: Mode) -> Option<BsdfSample> {
-        if lobes.contains(LOBE) { self.reflected(wo) } else { None }
-    }
-    fn delta_branches(&self, wo: Vec3, _: Mode) -> Branches {
-        let mut all = Branches::default();
-        if let Some(s) = self.reflected(wo) {
-            all.push(s);
-        }
-        all
+        Smooth(self.constants.at(lanes, slots[REFLECTANCE], interface.eta_above))
     }
 }

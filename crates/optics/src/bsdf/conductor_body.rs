@@ -1,5 +1,6 @@
 //! What smooth and rough conductors share: their rows and the reflectance of a metal at an angle.
 
+use super::mirror_body::Reflective;
 use super::slot;
 use crate::index::MetalCurves;
 use crate::{Lanes, Light, Palette, fresnel};
@@ -36,12 +37,14 @@ pub enum Constants {
     Plain(f32, crate::Spectrum),
 }
 
-/// At a path's lanes.
+/// A metal at a path's lanes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Metal {
+pub struct Metal {
     n: Light,
     k: Light,
     tint: Light,
+    /// Index outside.
+    eta_o: f32,
 }
 
 impl Constants {
@@ -52,23 +55,22 @@ impl Constants {
         }
     }
 
-    pub(super) fn at(&self, lanes: &Lanes, tint: Light) -> Metal {
+    pub(super) fn at(&self, lanes: &Lanes, tint: Light, eta_o: f32) -> Metal {
         let (n, k) = match self {
             Constants::Measured(curves) => curves.at(lanes),
             Constants::Plain(n, k) => (Light::splat(*n), k.at(lanes)),
         };
-        Metal { n, k, tint }
+        Metal { n, k, tint, eta_o }
     }
 }
 
-impl Metal {
-    pub(super) fn is_black(&self) -> bool {
-        self.tint.is_black()
+impl Reflective for Metal {
+    fn reflectance(&self, cos: f32) -> Light {
+        let at = |lane: usize| fresnel::conductor(cos, self.n[lane] / self.eta_o, self.k[lane] / self.eta_o);
+        Light(core::array::from_fn(at)) * self.tint
     }
 
-    /// Reflectance at an angle, from the index `eta_o` outside.
-    pub(super) fn reflectance(&self, cos: f32, eta_o: f32) -> Light {
-        let at = |lane: usize| fresnel::conductor(cos, self.n[lane] / eta_o, self.k[lane] / eta_o);
-        Light(core::array::from_fn(at)) * self.tint
+    fn is_black(&self) -> bool {
+        self.tint.is_black()
     }
 }

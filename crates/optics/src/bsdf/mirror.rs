@@ -27,9 +27,9 @@
 //! C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, equation 15.
 
 use super::boundary::Fresnel;
-use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::{Lanes, Light, Palette, fresnel};
-use kirkas_geometry::Vec3;
+use super::mirror_body::{Smooth, Tinted};
+use super::{Interface, Prepare, slot};
+use crate::{Lanes, Light, Palette};
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
 /// The table.
@@ -43,7 +43,6 @@ pub const SPEC: TypeSpec = TypeSpec {
     ],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
-const LOBE: Lobe = Lobe::DeltaReflection;
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
@@ -52,11 +51,7 @@ pub struct Prepared {
 }
 
 /// At a point.
-#[derive(Clone, Debug)]
-pub struct Mirror {
-    reflectance: Light,
-    fresnel: Fresnel,
-}
+pub type Mirror = Smooth<Tinted>;
 
 impl Prepare for Prepared {
     type At = Mirror;
@@ -64,45 +59,6 @@ impl Prepare for Prepared {
         Prepared { fresnel: Fresnel::of(params.text("fresnel")) }
     }
     fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> Mirror {
-        Mirror { reflectance: slots[REFLECTANCE], fresnel: self.fresnel }
-    }
-}
-
-impl Mirror {
-    fn reflected(&self, wo: Vec3) -> Option<BsdfSample> {
-        let f = metal(self.reflectance, self.fresnel, wo.z.abs());
-        let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-        (wo.z != 0.0 && !f.is_black()).then_some(BsdfSample { wi, f, pdf: 1.0, lobe: LOBE, eta: 1.0, disperses: false })
-    }
-}
-
-/// The reflectance of a metal-like (micro)mirror at an angle: Schlick's curve, or constant.
-pub(super) fn metal(reflectance: Light, kind: Fresnel, cos: f32) -> Light {
-    match kind {
-        Fresnel::Constant => reflectance,
-        // A lane without any reflectance, the idle one too, stays without.
-        _ => reflectance.map(|r0| if r0 > 0.0 { fresnel::schlick(r0, cos) } else { 0.0 }),
-    }
-}
-
-impl Scatter for Mirror {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(LOBE).when(!self.reflectance.is_black())
-    }
-    fn eval(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> Light {
-        Light::BLACK
-    }
-    fn pdf(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> f32 {
-        0.0
-    }
-    fn sample(&self, wo: Vec3, _: f32, _: (f32, f32), lobes: LobeSet, _: Mode) -> Option<BsdfSample> {
-        if lobes.contains(LOBE) { self.reflected(wo) } else { None }
-    }
-    fn delta_branches(&self, wo: Vec3, _: Mode) -> Branches {
-        let mut all = Branches::default();
-        if let Some(s) = self.reflected(wo) {
-            all.push(s);
-        }
-        all
+        Smooth(Tinted { reflectance: slots[REFLECTANCE], fresnel: self.fresnel })
     }
 }

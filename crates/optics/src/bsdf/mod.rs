@@ -37,6 +37,7 @@ pub mod rough_mirror;
 mod boundary;
 mod conductor_body;
 mod lobes;
+mod mirror_body;
 mod phong_body;
 
 pub use boundary::Interface;

@@ -30,11 +30,10 @@
 //! See `microfacet` for GGX, G and sampling, `conductor` for the reflectance.
 
 use super::conductor_body::{Constants, IOR, K, Metal, REFLECTANCE_ROW};
-use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::fresnel::reflect;
+use super::mirror_body::Rough;
+use super::{Interface, Prepare, slot};
 use crate::microfacet::Ggx;
 use crate::{Lanes, Light, Palette};
-use kirkas_geometry::Vec3;
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -47,7 +46,6 @@ pub const SPEC: TypeSpec = TypeSpec {
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
 const ROUGHNESS: usize = slot(SPEC.params, "roughness");
-const LOBE: Lobe = Lobe::GlossyReflection;
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
@@ -56,12 +54,7 @@ pub struct Prepared {
 }
 
 /// At a point.
-#[derive(Clone, Debug)]
-pub struct RoughConductor {
-    metal: Metal,
-    facets: Ggx,
-    eta_o: f32,
-}
+pub type RoughConductor = Rough<Metal>;
 
 impl Prepare for Prepared {
     type At = RoughConductor;
@@ -69,61 +62,7 @@ impl Prepare for Prepared {
         Prepared { constants: Constants::read(params, palette) }
     }
     fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> RoughConductor {
-        RoughConductor {
-            metal: self.constants.at(lanes, slots[REFLECTANCE]),
-            facets: Ggx::new(slots[ROUGHNESS][0]),
-            eta_o: interface.eta_above,
-        }
-    }
-}
-
-/// `v` with z turned over when `wo` is below: the model looks the same from both sides.
-fn upper(v: Vec3, wo: Vec3) -> Vec3 {
-    if wo.z < 0.0 { Vec3::new(v.x, v.y, -v.z) } else { v }
-}
-
-impl Scatter for RoughConductor {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(LOBE).when(!self.metal.is_black())
-    }
-
-    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> Light {
-        if !lobes.contains(LOBE) || !(wo.z * wi.z > 0.0) {
-            return Light::BLACK;
-        }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
-        let h = (wo + wi).normalize();
-        let dg = self.facets.d(h) * self.facets.g2_reflection(wo, wi) / (4.0 * wo.z * wi.z);
-        self.metal.reflectance(wo.dot(h), self.eta_o) * dg
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
-        if !(lobes & self.lobes()).contains(LOBE) || !(wo.z * wi.z > 0.0) {
-            return 0.0;
-        }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
-        let h = (wo + wi).normalize();
-        self.facets.visible_normal_pdf(wo, h) / (4.0 * wo.dot(h))
-    }
-
-    fn sample(&self, wo: Vec3, _: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
-        }
-        let up = upper(wo, wo);
-        let wi = upper(reflect(up, self.facets.sample_visible_normal(up, u)), wo);
-        let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
-            wi,
-            f: self.eval(wo, wi, lobes, mode),
-            pdf,
-            lobe: LOBE,
-            eta: 1.0,
-            disperses: false,
-        })
-    }
-
-    fn traced_lobes(&self) -> LobeSet {
-        self.lobes()
+        let mirror = self.constants.at(lanes, slots[REFLECTANCE], interface.eta_above);
+        Rough { mirror, facets: Ggx::new(slots[ROUGHNESS][0]) }
     }
 }

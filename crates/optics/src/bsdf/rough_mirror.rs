@@ -33,12 +33,10 @@
 //! SIGGRAPH 1981.
 
 use super::boundary::Fresnel;
-use super::mirror::metal;
-use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
-use crate::fresnel::reflect;
+use super::mirror_body::{Rough, Tinted};
+use super::{Interface, Prepare, slot};
 use crate::microfacet::Ggx;
 use crate::{Lanes, Light, Palette};
-use kirkas_geometry::Vec3;
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
 
@@ -55,7 +53,6 @@ pub const SPEC: TypeSpec = TypeSpec {
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
 const ROUGHNESS: usize = slot(SPEC.params, "roughness");
-const LOBE: Lobe = Lobe::GlossyReflection;
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
@@ -64,12 +61,7 @@ pub struct Prepared {
 }
 
 /// At a point.
-#[derive(Clone, Debug)]
-pub struct RoughMirror {
-    reflectance: Light,
-    facets: Ggx,
-    fresnel: Fresnel,
-}
+pub type RoughMirror = Rough<Tinted>;
 
 impl Prepare for Prepared {
     type At = RoughMirror;
@@ -77,57 +69,7 @@ impl Prepare for Prepared {
         Prepared { fresnel: Fresnel::of(params.text("fresnel")) }
     }
     fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> RoughMirror {
-        RoughMirror { reflectance: slots[REFLECTANCE], facets: Ggx::new(slots[ROUGHNESS][0]), fresnel: self.fresnel }
-    }
-}
-
-/// `v` with z turned over when `wo` is below: the model looks the same from both sides.
-fn upper(v: Vec3, wo: Vec3) -> Vec3 {
-    if wo.z < 0.0 { Vec3::new(v.x, v.y, -v.z) } else { v }
-}
-
-impl Scatter for RoughMirror {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(LOBE).when(!self.reflectance.is_black())
-    }
-
-    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> Light {
-        if !lobes.contains(LOBE) || !(wo.z * wi.z > 0.0) {
-            return Light::BLACK;
-        }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
-        let h = (wo + wi).normalize();
-        let dg = self.facets.d(h) * self.facets.g2_reflection(wo, wi) / (4.0 * wo.z * wi.z);
-        metal(self.reflectance, self.fresnel, wo.dot(h)) * dg
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
-        if !(lobes & self.lobes()).contains(LOBE) || !(wo.z * wi.z > 0.0) {
-            return 0.0;
-        }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
-        let h = (wo + wi).normalize();
-        self.facets.visible_normal_pdf(wo, h) / (4.0 * wo.dot(h))
-    }
-
-    fn sample(&self, wo: Vec3, _: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
-        }
-        let up = upper(wo, wo);
-        let wi = upper(reflect(up, self.facets.sample_visible_normal(up, u)), wo);
-        let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
-            wi,
-            f: self.eval(wo, wi, lobes, mode),
-            pdf,
-            lobe: LOBE,
-            eta: 1.0,
-            disperses: false,
-        })
-    }
-
-    fn traced_lobes(&self) -> LobeSet {
-        self.lobes()
+        let mirror = Tinted { reflectance: slots[REFLECTANCE], fresnel: self.fresnel };
+        Rough { mirror, facets: Ggx::new(slots[ROUGHNESS][0]) }
     }
 }
