@@ -12,7 +12,7 @@ use std::io::{self, Read, Write};
 const MARK: [u8; 8] = *b"kirkacc\n";
 const BYTE_ORDER: u64 = 0x0102_0304_0506_0708;
 /// To be raised with every change of what lies in an arena.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// Why a tree could not be saved, or a saved one is refused.
 #[derive(Debug)]

@@ -25,6 +25,7 @@ use kirkas_accel::{Accel, AccelKind, Executor, Geometry, Instance, SceneGeometry
 use kirkas_optics::ColorMode;
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Map, Params};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What the caller decides besides the description.
@@ -224,15 +225,20 @@ fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> 
 
 /// Names of light groups become numbers.
 #[derive(Default)]
-pub(crate) struct Groups(pub Vec<String>);
+pub(crate) struct Groups {
+    pub names: Vec<String>,
+    numbers: BTreeMap<String, u32>,
+}
 
 impl Groups {
     pub(crate) fn number(&mut self, name: &str) -> u32 {
-        let at = self.0.iter().position(|n| n == name).unwrap_or_else(|| {
-            self.0.push(name.into());
-            self.0.len() - 1
-        });
-        at as u32
+        if let Some(known) = self.numbers.get(name) {
+            return *known;
+        }
+        let number = self.names.len() as u32;
+        self.names.push(name.into());
+        self.numbers.insert(name.into(), number);
+        number
     }
 }
 
@@ -391,7 +397,7 @@ fn compile(
         has_hulls,
         volumes,
         camera_media: MediumStack::EMPTY,
-        groups: groups.0,
+        groups: groups.names,
         object_names,
     };
     Ok(scene.with_camera_media(resolution))

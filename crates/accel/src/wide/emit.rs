@@ -190,6 +190,7 @@ impl Emitter<'_> {
             let (geometry, index) = r.ids();
             *slot = self.numbers.of(geometry, index);
         }
+        list.set_balls(self.numbers, self.geometries);
         let (line, own) = room.take(List::LINES);
         fill(own, &list);
         (Place::list(line), Promise { probability: 0.5, cost: run.len() as f32 })

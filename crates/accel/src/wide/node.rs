@@ -1,5 +1,7 @@
 //! How the tree lies in memory: one arena of 64-byte lines, in which nodes take 4 lines, nodes of what moves 7, and leaf blocks 5.
 
+use super::numbers::Numbers;
+use crate::scene_geometry::{Geometry, Shape, Sphere};
 use kirkas_geometry::{Bounds3, Vec3};
 
 /// Children of a node, and triangles of a leaf block.
@@ -47,14 +49,17 @@ pub(super) struct Block {
     pub numbers: [u32; WIDTH],
 }
 
+/// Spheres that a [`List`] holds itself.
+pub(super) const BALLS: usize = 2;
+
 /// Up to 8 primitives of any type, by number.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct List {
     /// Numbers within the level.
     pub numbers: [u32; WIDTH],
-    /// Zeros up to the end of the line.
-    pub rest: [u32; WIDTH],
+    /// Centre and radius of those of the first that are spheres: they are tested without a look elsewhere. Else zeros.
+    pub balls: [[f32; 4]; BALLS],
 }
 
 /// Where a node or a leaf is: its type and size in the top 4 bits, its first line in the others. 28 bits of lines
@@ -200,5 +205,26 @@ impl Block {
 impl List {
     /// Fills what is not used.
     pub const NONE: u32 = u32::MAX;
-    pub const EMPTY: List = List { numbers: [List::NONE; WIDTH], rest: [0; WIDTH] };
+    pub const EMPTY: List = List { numbers: [List::NONE; WIDTH], balls: [[0.0; 4]; BALLS] };
+
+    /// The sphere in a place, if it is held here.
+    #[inline(always)]
+    pub fn ball(&self, place: usize) -> Option<Sphere> {
+        let &[x, y, z, radius] = self.balls.get(place)?;
+        (radius > 0.0).then_some(Sphere { center: Vec3::new(x, y, z), radius })
+    }
+
+    /// Take note of the spheres as they are.
+    pub fn set_balls(&mut self, numbers: &Numbers, geometries: &[Geometry]) {
+        for (ball, &number) in self.balls.iter_mut().zip(&self.numbers).filter(|(_, n)| **n != List::NONE) {
+            let (geometry, index) = numbers.ids(number);
+            *ball = match geometries.get(geometry as usize).map(|g| &g.shape) {
+                Some(Shape::Spheres(spheres)) => {
+                    let Sphere { center, radius } = spheres[index as usize];
+                    [center.x, center.y, center.z, radius]
+                }
+                _ => [0.0; 4],
+            };
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::Tree;
 use super::arena::{put, read};
 use super::motion::Swept;
-use super::node::{Block, MotionNode, Place, WIDTH};
+use super::node::{Block, List, MotionNode, Place, WIDTH};
 use crate::gather::gather_unbounded;
 use crate::instance::PlacedInstance;
 use crate::primitive;
@@ -27,7 +27,7 @@ impl Tree {
     /// The new box of what is at a place.
     fn refit_place(&mut self, place: Place, geometries: &[Geometry], instances: &[PlacedInstance]) -> Swept {
         let Some(mut node) = self.node(place).copied() else {
-            self.refit_block(place, geometries);
+            self.refit_leaf(place, geometries);
             let held = self.leaf(place).into_iter().flatten();
             let bounds = held.map(|number| self.bounds_of(number, geometries, instances)).reduce(Swept::union);
             return bounds.unwrap_or(Swept::still(Bounds3::EMPTY));
@@ -49,9 +49,13 @@ impl Tree {
         filled().map(|(_, b)| b).reduce(Swept::union).unwrap_or(Swept::still(Bounds3::EMPTY))
     }
 
-    /// New corners for a block.
-    fn refit_block(&mut self, place: Place, geometries: &[Geometry]) {
+    /// New corners for a block, new spheres for a list.
+    fn refit_leaf(&mut self, place: Place, geometries: &[Geometry]) {
         let lines = &mut self.lines[place.line()..];
+        if let Some(mut list) = read::<List>(lines, 0).copied().filter(|_| place.is_list()) {
+            list.set_balls(&self.numbers, geometries);
+            return put(lines, &list);
+        }
         let Some(mut block) = read::<Block>(lines, 0).copied().filter(|_| place.is_block()) else { return };
         for lane in 0..place.count() {
             let (geometry, index) = self.numbers.ids(block.numbers[lane]);

@@ -55,7 +55,7 @@ impl Tree {
         }
     }
 
-    /// A leaf is one, of primitives that there are, and a block holds their corners.
+    /// A leaf is one, of primitives that there are, and a block holds their corners, a list its spheres.
     fn check_leaf(&self, place: Place, count: usize, geometries: &[Geometry]) -> Result<(), String> {
         if !(place.is_block() || place.is_list()) {
             return Err("a place of no type".into());
@@ -82,7 +82,15 @@ impl Tree {
                 return Err(format!("a block holds other corners than those of primitive {number}"));
             }
         }
-        Ok(())
+        match read::<List>(&self.lines, place.line()).filter(|_| place.is_list()) {
+            Some(list) => {
+                let mut own = *list;
+                own.set_balls(&self.numbers, geometries);
+                let is_own = own.balls.map(|b| b.map(f32::to_bits)) == list.balls.map(|b| b.map(f32::to_bits));
+                if is_own { Ok(()) } else { Err("a list holds other spheres than its own".into()) }
+            }
+            None => Ok(()),
+        }
     }
 
     /// Inner nodes.

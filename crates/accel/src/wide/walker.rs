@@ -9,7 +9,7 @@ use super::{MAX_LEVELS, Tree};
 use crate::prepared_ray::PreparedRay;
 use crate::record::IS_INSTANCE;
 use crate::search::{Enter, Level, Search};
-use crate::{moving, primitive};
+use crate::{moving, primitive, sphere};
 use core::mem::MaybeUninit;
 use kirkas_geometry::bounds::pad_far;
 
@@ -294,7 +294,15 @@ pub unsafe fn test_leaf<B: Backend, const ANY: bool>(
 
 #[inline(never)]
 fn test_list<const ANY: bool>(list: &List, ray: &PreparedRay, search: &mut Search<ANY>, ground: &Ground<ANY>) {
-    for &number in list.numbers.iter().take_while(|n| **n != List::NONE) {
+    for (place, &number) in list.numbers.iter().take_while(|n| **n != List::NONE).enumerate() {
+        if let Some(ball) = list.ball(place) {
+            search.counters.primitives_tested += 1;
+            sphere::intersect(&ball, ray, |t| {
+                let (geometry, index) = ground.tree.numbers.ids(number);
+                search.offer(ground.level, geometry, index, (t, 0.0, 0.0))
+            });
+            continue;
+        }
         let (geometry, index) = ground.tree.numbers.ids(number);
         if geometry == IS_INSTANCE {
             (ground.enter)(ray, search, index);

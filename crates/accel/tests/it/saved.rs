@@ -91,7 +91,7 @@ fn each_refusal_says_why() {
     let mut order = file[8..16].to_vec();
     order.reverse();
     assert_eq!(with(8, &order), "the tree was saved on a machine with another order of bytes; build it anew");
-    let version = "the tree was saved in version 77 of the format, and this is version 1; build it anew";
+    let version = "the tree was saved in version 77 of the format, and this is version 2; build it anew";
     assert_eq!(with(16, &77_u64.to_ne_bytes()), version);
     let text = build(AccelKind::Bvh2, &scene).save(&mut Vec::new()).unwrap_err().to_string();
     assert_eq!(text, "a bvh2 cannot be saved; trees of the kinds bvh8, bvh8_fast, bvh8_best and bvh8_compact can");

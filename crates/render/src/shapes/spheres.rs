@@ -13,6 +13,8 @@ use std::sync::{Arc, OnceLock};
 /// Spheres of one object, its map to part space being a similarity.
 pub struct SphereSet {
     spheres: Arc<Vec<Sphere>>,
+    /// The sphere where there is one only: at hand, since thousands of lamps are looked up at random.
+    only: Option<Sphere>,
     /// The turn (and mirror) of the map, without its scale.
     part_turn: DMat3,
     object_from_part: DAffine3,
@@ -41,9 +43,11 @@ impl SphereSet {
             bounds = bounds.union(own);
             spheres.push(sphere);
         }
+        let only = if spheres.len() == 1 { Some(spheres[0]) } else { None };
         let spheres = Arc::new(spheres);
         let surface = Arc::new(SphereSet {
             spheres: spheres.clone(),
+            only,
             part_turn: m.matrix3 * (1.0 / scale),
             object_from_part: m.inverse(),
             bounds,
@@ -72,7 +76,7 @@ impl SphereSet {
 
     /// The cone in which the only sphere is seen from `from`: distance to the center, and 1 - cos of the half angle.
     fn cone(&self, from: DVec3) -> Option<Cone> {
-        let [sphere] = self.spheres.as_slice() else { return None };
+        let sphere = self.only?;
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
         let distance = (center - from).length();
         if !(distance > radius) {
