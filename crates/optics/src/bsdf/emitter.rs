@@ -1,6 +1,6 @@
 //! # emitter
 //!
-//! The surface of a lamp: it shines and reflects nothing. The renderer makes an area light of every object that wears it.
+//! The surface of a lamp: it shines, and may reflect diffusely as well. The renderer makes an area light of every object that wears it.
 //!
 //! ## Parameters
 //!
@@ -10,6 +10,7 @@
 //! | `intensity` | number | `unit` | 1 | how much |
 //! | `unit` | `plain`, `W/m2/sr`, `nit`, `W`, `lm` | | `plain` | what `intensity` counts: radiance (`plain`, `W/m2/sr`), luminance, or what the whole lamp gives off |
 //! | `two_sided` | true or false | | false | shines from its back as well |
+//! | `reflectance` | colour or texture, 0..1 | | 0 | part of the arriving light that is reflected, as `lambert` does |
 //! | `samples` | whole number | | 4 | shadow rays to it per hit, stratified |
 //! | `group` | text | | the object's name | light group its light is filed under |
 //!
@@ -30,56 +31,42 @@
 //!
 //! Units: IES, "Nomenclature and Definitions for Illuminating Engineering", LS-1-20.
 
-use super::{BsdfSample, Interface, LobeSet, Mode, Prepare, Scatter};
+use super::{Interface, Prepare, slot};
 use crate::{Lanes, Light, Palette};
-use kirkas_geometry::Vec3;
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
+
+/// What is left of it at a point once it has shone.
+pub use super::lambert::Lambert as Emitter;
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "emitter",
-    doc: "The surface of a lamp: it shines and reflects nothing.",
+    doc: "The surface of a lamp: it shines, and may reflect diffusely as well.",
     params: &[
         ParamSpec::reflectance("radiance", [1.0; 3], "colour of the light, times `intensity`").range(NOT_NEGATIVE),
         ParamSpec::number("intensity", 1.0, "how much light, in `unit`").range(NOT_NEGATIVE),
         ParamSpec::choice("unit", &["plain", "W/m2/sr", "nit", "W", "lm"], "what `intensity` counts"),
         ParamSpec::bool("two_sided", false, "shines from its back as well"),
+        ParamSpec::reflectance("reflectance", [0.0; 3], "part of the arriving light that is reflected diffusely"),
         ParamSpec::integer("samples", 4, (1.0, 65536.0), "shadow rays to it per hit, stratified"),
         ParamSpec::new("group", ParamType::Text, Fallback::Absent, "light group; absent = the object's name"),
     ],
 };
 
-/// Nothing: the renderer reads the table itself.
+const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
+
+/// Nothing is fixed; what shines the renderer reads from the table itself.
 #[derive(Clone, Debug)]
 pub struct Prepared;
-
-/// A black surface.
-#[derive(Clone, Debug)]
-pub struct Emitter;
 
 impl Prepare for Prepared {
     type At = Emitter;
     fn prepare(_: &Params, _: &Palette) -> Self {
         Prepared
     }
-    fn at(&self, _: &Lanes, _: &[Light], _: Interface) -> Emitter {
-        Emitter
-    }
-}
-
-impl Scatter for Emitter {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::NONE
-    }
-    fn eval(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> Light {
-        Light::BLACK
-    }
-    fn pdf(&self, _: Vec3, _: Vec3, _: LobeSet, _: Mode) -> f32 {
-        0.0
-    }
-    fn sample(&self, _: Vec3, _: f32, _: (f32, f32), _: LobeSet, _: Mode) -> Option<BsdfSample> {
-        None
+    fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> Emitter {
+        Emitter::new(slots[REFLECTANCE])
     }
 }

@@ -58,7 +58,13 @@ impl Prepare for Prepared {
         Prepared
     }
     fn at(&self, _: &Lanes, slots: &[Light], _: Interface) -> Lambert {
-        Lambert { reflectance: slots[REFLECTANCE] }
+        Lambert::new(slots[REFLECTANCE])
+    }
+}
+
+impl Lambert {
+    pub(super) fn new(reflectance: Light) -> Self {
+        Lambert { reflectance }
     }
 }
 

@@ -126,7 +126,7 @@ fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
         ],
         "emitter" => vec![
             (vec![], 1.0),
-            (vec![n("intensity", 5.0)], 1.0),
+            (vec![n("intensity", 5.0), c("reflectance", [0.2, 0.5, 0.9])], 1.0),
             (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
         ],
         "hull" => vec![(vec![], 1.0), (vec![], 1.33), (vec![("priority", Value::Int(3))], 1.0)],

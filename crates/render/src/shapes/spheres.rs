@@ -74,12 +74,14 @@ impl SphereSet {
         AreaSample { position, normal, uv: self.uv(normal).0, object_position, pdf_area }
     }
 
-    /// The cone in which the only sphere is seen from `from`: distance to the center, and 1 - cos of the half angle.
+    /// The cone in which the only sphere is seen from `from`; `None` from within, and from its own surface, where rounding would
+    /// decide between the two.
     fn cone(&self, from: DVec3) -> Option<Cone> {
         let sphere = self.only?;
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
         let distance = (center - from).length();
-        if !(distance > radius) {
+        const ROUNDING: f64 = 1e-12;
+        if !(distance - radius > ROUNDING * (radius + center.abs().max_element())) {
             return None;
         }
         let sin2 = (radius / distance) * (radius / distance);

@@ -16,12 +16,18 @@ struct Scene {
     is_matte: bool,
 }
 
-const SCENES: [Scene; 8] = [
+const SCENES: [Scene; 9] = [
     Scene { name: "nothing before a white sky", body: "[background]\ncolor = 1\n", is_matte: false },
     Scene {
         name: "inside a lamp",
         body: "[materials.lamp]\ntype = \"emitter\"\ntwo_sided = true\n[objects.room]\ntype = \"sphere\"\nradius = 20\nmaterial = \"lamp\"\n",
         is_matte: false,
+    },
+    // M = E + rho M = 1 with rho = E = 1/2.
+    Scene {
+        name: "inside a lamp that reflects",
+        body: "[materials.lamp]\ntype = \"emitter\"\nintensity = 0.5\nreflectance = 0.5\ntwo_sided = true\n[objects.room]\ntype = \"sphere\"\nradius = 20\nmaterial = \"lamp\"\n",
+        is_matte: true,
     },
     Scene {
         name: "a perfect mirror",

@@ -97,6 +97,22 @@ fn light_bounces_in_closed_rooms_as_often_as_it_must() {
     assert_shows(&look(&convex, [3.0, 1.0, 0.2], 4096), 0.5, 1e-2);
 }
 
+#[test]
+fn a_room_that_glows_and_reflects_shows_the_glow_over_what_is_lost() {
+    let room = "type = \"sphere\"\nradius = 2\n";
+    let tent = "type = \"mesh\"\nvertices = [[-3, -2, -2], [3, -2, -2], [0, -2, 4], [0, 3, 0]]\n\
+                faces = [0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0]\n";
+    for (shape, glow, rho) in [(room, 0.3, 0.2), (room, 1.0, 0.8), (tent, 0.3, 0.5), (tent, 2.0, 0.9)] {
+        for integrator in ["path", "path_simple"] {
+            let body = format!(
+                "[integrator]\ntype = \"{integrator}\"\nmax_depth = 4000\n[materials.glow]\ntype = \"emitter\"\n\
+                 intensity = {glow:?}\nreflectance = {rho}\ntwo_sided = true\n[objects.room]\nmaterial = \"glow\"\n{shape}"
+            );
+            assert_shows(&look(&body, [0.3, 0.1, 0.4], 16_384), glow / (1.0 - rho), 2e-2);
+        }
+    }
+}
+
 /// White behind (-z), black before.
 const WHITE_BELOW: &str =
     "[background]\ntype = \"gradient\"\nup = [0, 0, 1]\nstops = [[-1, 1], [0, 1], [0, 0], [1, 0]]\n";
