@@ -66,6 +66,7 @@ pub fn load(path: &Path, header: &Header, layout: &FilmLayout, samples: &Range<u
         ("the image size", a.size != b.size),
         ("the crop window", a.crop != b.crop),
         ("the light groups", a.groups != b.groups),
+        ("the spectral bins", a.bins != b.bins),
         ("the AOVs", a.aovs != b.aovs),
     ];
     differences.extend(differs.iter().filter(|d| d.1).map(|d| d.0.to_string()));

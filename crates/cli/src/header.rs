@@ -79,6 +79,7 @@ impl Header {
         let mut header = Header::of_texts(&image.attributes.iter().filter_map(text).collect());
         // The layout of the integers is the film's.
         header.0.remove("groups");
+        header.0.remove("spectral_bins");
         header
     }
 

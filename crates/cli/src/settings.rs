@@ -5,6 +5,7 @@ use crate::problem::Problem;
 use crate::scene_file::SceneFile;
 use kirkas_formats::toml::apply_override;
 use kirkas_render::catalog;
+use kirkas_render::film::SpectralBins;
 use kirkas_scene::validate::validate;
 use kirkas_scene::{Diagnostic, Kind, Map, Name, Node, Span, Value};
 use std::path::PathBuf;
@@ -81,6 +82,12 @@ impl<'a> Settings<'a> {
         let sampler = self.scene.description.single(Kind::Sampler);
         let is_adaptive = sampler.and_then(|e| e.params.get("error")?.number()).is_some_and(|e| e > 0.0);
         self.flag("--spp", if is_adaptive { "sampler.max_samples" } else { "sampler.samples" }, samples);
+    }
+
+    /// Bins of wavelength.
+    pub fn spectral_bins(&mut self, bins: SpectralBins) {
+        self.flag("--spectral-bins", "film.spectral_bins", i64::from(bins.count));
+        self.overrides(&[format!("film.spectral_range=[{:?}, {:?}]", bins.low, bins.high)]);
     }
 
     /// All shutters open at `time`, for as long as they did.

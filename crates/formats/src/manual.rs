@@ -155,6 +155,27 @@ In the integers that `--samples` and `--checkpoint` keep, groups add up exactly,
 a power of two gives the picture that would have been rendered, to the bit, if the lights' brightness decides nothing in the
 render (in `whitted`). From layers of floats each number is rounded to 32 bits before it is added: off by 2^-24 of each layer.
 
+## Keep the spectrum
+
+With `--color spectral --spectral-bins N` (or `film.spectral_bins`) an EXR also keeps the spectrum of every pixel, as N layers beside
+the usual `R`, `G`, `B`:
+
+```sh
+kirkas render scene.toml --color spectral --spectral-bins 40 -o spectra.exr          # 380 to 780 nm, 10 nm each
+kirkas render scene.toml --color spectral --spectral-bins 30:400..700 -o spectra.exr
+```
+
+The layers are those of Fichet, Pacanowski & Wilkie ("An OpenEXR Layout for Spectral Images", JCGT 10(3), 2021): `S0.585,00nm` is
+the bin whose middle is 585 nm, `spectralLayoutVersion` is `1.0` and `emissiveUnits` is `W.m^-2.sr^-1`. Each number is the mean
+spectral radiance over its bin, *per nm*: times the width of a bin it is the radiance in the bin. Bins times the CIE observer give
+the colour of the pixel. Where lights are given in lm, cd, lux or nit the unit is W/(m2 sr nm). Otherwise it is that of the scene: a
+film value of 1 stands for a luminance of 683 cd/m2, that is, for 1 W/(m2 sr) as y-bar weighs it.
+
+Wavelengths are then drawn half evenly, so that faint ends of the spectrum are known, too: another picture than without bins, but for
+noise the same. Each path carries four wavelengths, so a bin sees about 4 / N of the samples: narrow bins want many. Bins are integers
+until they are written, like all light: threads, parts, checkpoints and resumes change no bit. They hold the light of all groups,
+so `relight` leaves them out.
+
 ## Remove the noise
 
 `--denoise` runs Open Image Denoise over PNG and HDR pictures, with the albedo and normals of the first hits as guides, if the

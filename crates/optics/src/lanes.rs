@@ -12,7 +12,7 @@
 //! must divide by the mean of the lanes' densities (distances in a medium whose extinction is coloured).
 
 use crate::Light;
-use crate::spectrum::observer::{CELLS, observer};
+use crate::spectrum::observer::{CELLS, Draw, observer};
 use crate::spectrum::sigmoid;
 use kirkas_scene::{ParamSpec, ParamType};
 
@@ -33,6 +33,7 @@ pub struct Lanes {
     place: f32,
     wavelengths: [f32; 4],
     mode: ColorMode,
+    draw: Draw,
     hero: u8,
     is_alone: bool,
 }
@@ -77,15 +78,25 @@ impl Lanes {
         place: 0.0,
         wavelengths: [PRIMARIES[0], PRIMARIES[1], PRIMARIES[2], PRIMARIES[1]],
         mode: ColorMode::Rgb,
+        draw: Draw::Color,
         hero: 1,
         is_alone: false,
     };
 
     /// Four wavelengths; `u` in `[0, 1)` places the hero.
     pub fn spectral(u: f32) -> Self {
+        Self::drawn(Draw::Color, u)
+    }
+
+    /// The same where all wavelengths matter, not only what they do to the colour.
+    pub fn of_spectrum(u: f32) -> Self {
+        Self::drawn(Draw::Spectrum, u)
+    }
+
+    fn drawn(draw: Draw, u: f32) -> Self {
         let place = u * CELLS as f32;
-        let wavelengths = Self::places(place).map(|p| observer().wavelength(p).0);
-        Lanes { place, wavelengths, mode: ColorMode::Spectral, hero: 0, is_alone: false }
+        let wavelengths = Self::places(place).map(|p| observer().wavelength(draw, p).0);
+        Lanes { place, wavelengths, mode: ColorMode::Spectral, draw, hero: 0, is_alone: false }
     }
 
     fn places(place: f32) -> [f32; 4] {
@@ -100,6 +111,15 @@ impl Lanes {
     #[inline]
     pub fn wavelengths(&self) -> [f32; 4] {
         self.wavelengths
+    }
+
+    /// The nm that each lane stands for: light per nm times these, over all paths, is its integral over the wavelengths. In
+    /// RGB mode 0.
+    pub fn nanometres(&self) -> [f32; 4] {
+        match self.mode {
+            ColorMode::Rgb => [0.0; 4],
+            ColorMode::Spectral => Self::places(self.place).map(|p| observer().wavelength(self.draw, p).1 * 0.25),
+        }
     }
 
     /// How colour is carried.
@@ -219,10 +239,9 @@ impl Lanes {
             }
             ColorMode::Spectral => {
                 let mut weights = [Light::BLACK; 3];
-                for (lane, place) in Self::places(self.place).into_iter().enumerate() {
-                    let (wavelength, nanometres_per_chance) = observer().wavelength(place);
-                    for (c, bar) in observer().film(wavelength).into_iter().enumerate() {
-                        weights[c].0[lane] = bar * (nanometres_per_chance * 0.25);
+                for (lane, nanometres) in self.nanometres().into_iter().enumerate() {
+                    for (c, bar) in observer().film(self.wavelengths[lane]).into_iter().enumerate() {
+                        weights[c].0[lane] = bar * nanometres;
                     }
                 }
                 FilmWeights(weights)

@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::catalog::{ACCELERATORS, catalog};
 use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
-use crate::film::{AovSet, FilmLayout, Rect};
+use crate::film::{AovSet, FilmLayout, Rect, SpectralBins};
 use crate::frames::{bad_geometry, frame_time, is_moving};
 use crate::integrators::{INTEGRATORS, Integrator, MediumStack};
 use crate::lights::collect::{add_area_lights, scene_radius};
@@ -96,6 +96,7 @@ impl Prepared {
             clamp: self.clamp,
             resolution: self.film.size,
             planes: self.film.planes(),
+            bins: self.film.bins,
             keeps_aovs: !self.film.aovs.is_empty(),
             flock,
         }
@@ -220,7 +221,33 @@ fn film_layout(p: &Params, options: &Options) -> Result<FilmLayout, Diagnostic> 
             .at(p.span("width"), "times `height`")
             .help(format!("stay below {MOST_PIXELS} pixels, or render parts with --crop")));
     }
-    Ok(FilmLayout { size, crop, groups: Vec::new(), aovs: options.aovs })
+    Ok(FilmLayout { size, crop, groups: Vec::new(), aovs: options.aovs, bins: spectral_bins(p, crop)? })
+}
+
+fn spectral_bins(p: &Params, crop: Rect) -> Result<Option<SpectralBins>, Diagnostic> {
+    let count = p.integer("spectral_bins") as u32;
+    if count == 0 {
+        return Ok(None);
+    }
+    if p.text("color") != Some(ColorMode::Spectral.name()) {
+        let message = "spectral bins need wavelengths, and this render carries light as red, green and blue";
+        return Err(Diagnostic::error("no-wavelengths", message)
+            .at(p.span("spectral_bins"), "bins of wavelength")
+            .help("add `--color spectral`, or `color = \"spectral\"` under `[film]`; or leave the bins out"));
+    }
+    let bins = SpectralBins::new(count, p.vector2("spectral_range")).ok_or_else(|| {
+        Diagnostic::error("bad-range", "the spectral range ends before it begins")
+            .at(p.span("spectral_range"), "here")
+            .help("write the lower wavelength first, in nm, such as [400, 700]")
+    })?;
+    const MOST_SUMS: usize = 1 << 28;
+    if crop.area() * count as usize > MOST_SUMS {
+        let message = format!("{count} bins for each of {} x {} pixels are too many", crop.width(), crop.height());
+        return Err(Diagnostic::error("too-large", message)
+            .at(p.span("spectral_bins"), "times the pixels")
+            .help(format!("stay below {MOST_SUMS} together, or render parts with --crop")));
+    }
+    Ok(Some(bins))
 }
 
 /// Names of light groups become numbers.
@@ -379,6 +406,7 @@ fn compile(
     let has_hulls = materials.iter().any(|m| m.is_hull);
     let scene = Scene {
         color,
+        keeps_spectra: singles.params(Kind::Film).integer("spectral_bins") > 0,
         disperses: materials.iter().any(|m| m.medium.as_ref().is_some_and(|x| x.ior.is_dispersive())),
         accel,
         world: infos(world),

@@ -2,6 +2,7 @@
 //!
 //! Nothing here changes what a sample is: flocks of any size give the same bits, because every sample adds integers.
 
+use crate::film::spectral::LaneSums;
 use crate::film::{AovSample, FinishedSample, Tile, fixed};
 use crate::integrators::crossing;
 use crate::integrators::{Blocker, PathState, RayKind, ShadowRay, StepOutput};
@@ -26,6 +27,7 @@ struct Slot {
     /// Rays that may still bring light.
     pending: u32,
     sums: Vec<[i128; 3]>,
+    lanes: Option<LaneSums>,
     is_invalid: bool,
     aov: Option<AovSample>,
 }
@@ -127,6 +129,7 @@ impl<'a, O: Observer> Flock<'a, O> {
         let start = self.renderer.camera_path(&sampler, id);
         let film_weights = start.path.lanes.film_weights();
         let planes = self.renderer.planes;
+        let lanes = self.renderer.bins.map(|b| LaneSums::new(&b, &start.path.lanes));
         let new = |mut sums: Vec<[i128; 3]>| {
             sums.clear();
             sums.resize(planes, [0; 3]);
@@ -138,6 +141,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 weight: start.weight,
                 pending: 1,
                 sums,
+                lanes,
                 is_invalid: false,
                 aov: None,
             }
@@ -275,7 +279,7 @@ impl<'a, O: Observer> Flock<'a, O> {
             return;
         }
         let aov = slot.aov.unwrap_or_default();
-        let sample = FinishedSample { sums: &slot.sums, is_invalid: slot.is_invalid, aov };
+        let sample = FinishedSample { sums: &slot.sums, lanes: slot.lanes.as_ref(), is_invalid: slot.is_invalid, aov };
         tile.add(slot.pixel, slot.id, &sample);
         slot.pixel = DONE;
         self.free.push(slot_index);
@@ -290,19 +294,26 @@ const DONE: usize = usize::MAX;
 
 /// Round a contribution once and add it to its sample.
 fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64, light: Light, group: u32) {
-    let rgb = clamped(slot.film_weights.apply(light), r.clamp);
+    let rgb = slot.film_weights.apply(light);
+    let share = within(rgb, r.clamp);
+    let rgb = rgb.map(|c| c * share);
     let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
     let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
         slot.is_invalid = true;
         return;
     };
+    let factor = f64::from(share) * f64::from(slot.weight);
+    if slot.lanes.as_mut().is_some_and(|lanes| !lanes.add(light, factor)) {
+        slot.is_invalid = true;
+        return;
+    }
     let sum = &mut slot.sums[if r.planes > 1 { group as usize } else { 0 }];
     *sum = [sum[0] + red, sum[1] + green, sum[2] + blue];
     observer.contribution(slot.id, branch, group, light, [red, green, blue]);
 }
 
-/// The same colour, no channel beyond `most`; 0 = as it is.
-fn clamped(rgb: [f32; 3], most: f32) -> [f32; 3] {
+/// The share of a colour that has no channel beyond `most`; 0 = all of it.
+fn within(rgb: [f32; 3], most: f32) -> f32 {
     let greatest = rgb[0].abs().max(rgb[1].abs()).max(rgb[2].abs());
-    if most > 0.0 && greatest > most { rgb.map(|c| c * (most / greatest)) } else { rgb }
+    if most > 0.0 && greatest > most { most / greatest } else { 1.0 }
 }

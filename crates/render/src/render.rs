@@ -3,7 +3,7 @@
 use crate::camera::CameraSample;
 use crate::film::adaptive::ErrorTarget;
 use crate::film::filter::Filter;
-use crate::film::{AovSample, Film, Tile};
+use crate::film::{AovSample, Film, SpectralBins, Tile};
 use crate::flock::Flock;
 use crate::integrators::{Integrator, Pass, PathState, RayKind};
 use crate::observe::{Observer, SampleId};
@@ -36,6 +36,8 @@ pub struct Renderer<'a> {
     pub resolution: (u32, u32),
     /// Light groups that are kept apart; 1 = all in one.
     pub planes: usize,
+    /// Light by wavelength is kept as well.
+    pub bins: Option<SpectralBins>,
     /// Whether first hits are recorded.
     pub keeps_aovs: bool,
     /// Rays that travel together.
@@ -154,6 +156,7 @@ impl Renderer<'_> {
             crop: rect,
             groups: vec![String::new(); if self.planes > 1 { self.planes } else { 0 }],
             aovs: Default::default(),
+            bins: self.bins,
         };
         let mut film = Film::new(layout);
         for sample in samples.clone() {

@@ -65,6 +65,8 @@ pub const SECONDARY: u32 = 2;
 pub struct Scene {
     /// How paths carry colour.
     pub color: ColorMode,
+    /// Spectra are kept, so that all wavelengths matter.
+    pub keeps_spectra: bool,
     /// True when some boundary refracts lanes differently.
     pub disperses: bool,
     /// Finds hits.
@@ -178,6 +180,7 @@ impl Scene {
     pub fn lanes(&self, u: impl FnOnce() -> f32) -> Lanes {
         match self.color {
             ColorMode::Rgb if !self.disperses => Lanes::RGB,
+            ColorMode::Spectral if self.keeps_spectra => Lanes::of_spectrum(u()),
             mode => mode.lanes(u()),
         }
     }

@@ -11,6 +11,7 @@ use crate::report;
 use kirkas_images::{ChannelData, ExrCompression, Image, ImageError, read_exr, write_exr, write_hdr, write_png8};
 use kirkas_render::film::image::{Depth, layer_names};
 use kirkas_render::film::part::{PartError, read_part};
+use kirkas_render::film::spectral::is_bin_layer;
 use kirkas_scene::Diagnostic;
 use std::path::{Path, PathBuf};
 
@@ -133,8 +134,10 @@ fn mixed_layers(mut image: Image, mix: &LightMix, depth: Depth) -> Image {
         Depth::Float => ChannelData::F32(values),
     };
     let pixels = image.data.width as usize * image.data.height as usize;
-    // The groups know nothing of noise, and a denoised picture is none of them.
-    image.channels.retain(|c| !c.name.starts_with("variance.") && !c.name.starts_with("denoised."));
+    // The groups know nothing of noise nor of wavelengths, and a denoised picture is none of them.
+    let is_of_groups =
+        |name: &str| !name.starts_with("variance.") && !name.starts_with("denoised.") && !is_bin_layer(name);
+    image.channels.retain(|c| is_of_groups(&c.name));
     for (lane, channel) in ["R", "G", "B"].into_iter().enumerate() {
         let mut sum = vec![0.0; pixels];
         for c in &mut image.channels {

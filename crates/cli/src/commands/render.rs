@@ -6,7 +6,7 @@ use crate::denoise::Denoiser;
 use crate::frames;
 use crate::header::Header;
 use crate::job::Job;
-use crate::output::{PictureFile, check_no_loss, true_place};
+use crate::output::{PictureFile, PictureFormat, check_no_loss, true_place};
 use crate::pictures::Development;
 use crate::places::Places;
 use crate::problem::{Outcome, Problem};
@@ -17,6 +17,7 @@ use crate::scene_file::SceneFile;
 use crate::settings::{SceneArgs, Settings};
 use crate::stats::Seconds;
 use clap::ArgGroup;
+use kirkas_render::film::SpectralBins;
 use kirkas_render::{Options, Prepared, Rect, prepare};
 use kirkas_scene::{Diagnostic, Kind};
 use std::ops::Range;
@@ -27,6 +28,7 @@ const EXAMPLES: &str = "Examples:
   kirkas render scenes/sphereflake.toml -o flake.png
   kirkas render scene.toml -o out.exr -o out.png --spp 256 --aov depth,normals
   kirkas render scene.toml --error 0.02 --aov sample_count -o out.exr
+  kirkas render scene.toml --color spectral --spectral-bins 40 -o spectra.exr
   kirkas render scene.toml --light-groups --samples 0..256 -o lights.exr
   kirkas render scene.toml --spp 4096 --checkpoint night.exr --resume -o out.exr
   kirkas render scene.toml --frames 0..48 --resume -o out.####.png -D film.frames_per_second=25
@@ -62,6 +64,10 @@ pub struct Render {
     /// Light as rgb, or spectral: as wavelengths
     #[arg(long, value_name = "MODE")]
     color: Option<String>,
+    /// With --color spectral, an EXR also keeps the spectrum of each pixel: N layers of mean radiance per nm, from 380 to 780 nm
+    /// or LO to HI
+    #[arg(long, value_name = "N[:LO..HI]", allow_negative_numbers = true, value_parser = spectral_bins)]
+    spectral_bins: Option<SpectralBins>,
     /// How rays find surfaces
     #[arg(long, value_name = "NAME")]
     accel: Option<String>,
@@ -132,6 +138,7 @@ pub fn run(args: &Render, started: Instant) -> Result<Outcome, Problem> {
         stats: args.stats.clone().filter(|p| p.as_os_str() != "-"),
         checkpoint: args.checkpoint.clone(),
     };
+    check_bins(args, &places.pictures)?;
     let denoiser = args.denoise.then(Denoiser::find).transpose()?;
     let frames: Vec<Option<u32>> = args.frames.clone().map_or(vec![None], |all| all.map(Some).collect());
     let places_of = |frame: Option<u32>| match (frame, &args.frames) {
@@ -237,6 +244,18 @@ fn output_files(args: &Render) -> Result<Vec<PictureFile>, Problem> {
     paths.iter().map(|p| PictureFile::new(p)).collect()
 }
 
+/// Only an EXR, or a checkpoint, has layers for spectral bins.
+fn check_bins(args: &Render, pictures: &[PictureFile]) -> Result<(), Problem> {
+    let has_layers = args.checkpoint.is_some() || pictures.iter().any(|p| p.format == PictureFormat::Exr);
+    match args.spectral_bins {
+        Some(_) if !has_layers => {
+            let message = "only an EXR keeps spectral bins, and none is to be written";
+            Err(Problem::input(Diagnostic::error("no-layers", message).help("add an EXR: `-o OUT.exr`")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Set what the options say; the overrides as the header keeps them.
 fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     let mut set = Settings::new(scene);
@@ -266,6 +285,9 @@ fn apply(args: &Render, scene: &mut SceneFile) -> Result<String, Problem> {
     }
     if let Some(name) = &args.color {
         set.flag("--color", "film.color", name.as_str());
+    }
+    if let Some(bins) = args.spectral_bins {
+        set.spectral_bins(bins);
     }
     if let Some(name) = &args.camera {
         set.flag("--camera", "film.camera", name.as_str());
@@ -319,6 +341,15 @@ fn crop(text: &str) -> Result<Rect, String> {
         Some(&[x0, y0, x1, y1]) => Ok(Rect { x0, y0, x1, y1 }),
         _ => Err("write X0,Y0,X1,Y1, such as 0,0,320,240".into()),
     }
+}
+
+fn spectral_bins(text: &str) -> Result<SpectralBins, String> {
+    let (most, [low, high]) = (SpectralBins::MOST, SpectralBins::RANGE);
+    SpectralBins::parse(text).ok_or_else(|| {
+        format!(
+            "write a number of bins from 1 to {most}, such as 40, or with a range within {low}..{high} nm: 30:400..700"
+        )
+    })
 }
 
 fn samples(text: &str) -> Result<Range<u32>, String> {

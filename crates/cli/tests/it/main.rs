@@ -15,3 +15,4 @@ mod interruptions;
 mod pages;
 mod relight;
 mod samplers;
+mod spectral_bins;

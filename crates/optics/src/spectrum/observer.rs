@@ -10,6 +10,15 @@ use std::sync::LazyLock;
 /// Stretches of equal probability that wavelengths are drawn from.
 pub const CELLS: usize = 256;
 
+/// How paths share out the wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draw {
+    /// As they matter to the colour of white light.
+    Color,
+    /// Half like that and half evenly: for renders that keep spectra, in which all wavelengths matter.
+    Spectrum,
+}
+
 /// Everything derived from the tables.
 pub struct Observer {
     /// Film red, green, blue per nm of radiance at each sample.
@@ -20,8 +29,8 @@ pub struct Observer {
     light_weights: [[f64; 3]; SAMPLES],
     /// Weights of a curve's samples in its red, green and blue when lit by `white`.
     reflected_weights: [[f64; 3]; SAMPLES],
-    /// Ends of the cells, nm.
-    ends: [f32; CELLS + 1],
+    /// Ends of the cells, nm, by [`Draw`].
+    ends: [[f32; CELLS + 1]; 2],
 }
 
 static OBSERVER: LazyLock<Observer> = LazyLock::new(Observer::new);
@@ -59,7 +68,7 @@ impl Observer {
             white: white.map(|x| x as f32),
             light_weights: core::array::from_fn(|i| by_sample(&light, i)),
             reflected_weights: core::array::from_fn(|i| by_sample(&reflected, i)),
-            ends: cell_ends(&bars, &white),
+            ends: [0.01, 1.0].map(|floor| cell_ends(&bars, &white, floor)),
         }
     }
 
@@ -97,9 +106,10 @@ impl Observer {
 
     /// The wavelength at a place in `[0, CELLS)`, nm, and the nm per unit of probability there.
     #[inline]
-    pub fn wavelength(&self, place: f32) -> (f32, f32) {
+    pub fn wavelength(&self, draw: Draw, place: f32) -> (f32, f32) {
         let cell = (place as usize).min(CELLS - 1);
-        let (start, end) = (self.ends[cell], self.ends[cell + 1]);
+        let ends = &self.ends[draw as usize];
+        let (start, end) = (ends[cell], ends[cell + 1]);
         let width = end - start;
         (start + width * (place - cell as f32), width * CELLS as f32)
     }
@@ -133,14 +143,14 @@ fn tent_product_weights(a: &[f64; SAMPLES], b: &[f64; SAMPLES]) -> [f64; SAMPLES
 }
 
 /// Cells of equal probability. The density is the length of what white light adds to the film, (r, g, b) as a vector, which
-/// makes the sum of the three variances least; and nowhere less than a hundredth of its mean.
-fn cell_ends(bars: &[[f64; SAMPLES]; 3], white: &[f64; SAMPLES]) -> [f32; CELLS + 1] {
+/// makes the sum of the three variances least; and everywhere `floor` of its mean more.
+fn cell_ends(bars: &[[f64; SAMPLES]; 3], white: &[f64; SAMPLES], floor: f64) -> [f32; CELLS + 1] {
     let length = |i: usize| {
         let part = |c: usize| bars[c][i] * white[i];
         (part(0) * part(0) + part(1) * part(1) + part(2) * part(2)).sqrt()
     };
     let lengths: [f64; SAMPLES] = core::array::from_fn(length);
-    let least = 0.01 * lengths.iter().sum::<f64>() / SAMPLES as f64;
+    let least = floor * lengths.iter().sum::<f64>() / SAMPLES as f64;
     // Mass of each stretch between samples; the density is taken as even within it.
     let masses: Vec<f64> = lengths.windows(2).map(|l| 0.5 * (l[0] + l[1]) + least).collect();
     let total: f64 = masses.iter().sum();

@@ -35,7 +35,7 @@ impl Film {
         RgbImage { width: c.width(), height: rows.len() as u32, pixels }
     }
 
-    /// All layers: beauty, light groups, AOVs. AOVs that are numbers stay 32 bits wide.
+    /// All layers: beauty, light groups, AOVs, spectral bins. AOVs that are numbers, and bins, stay 32 bits wide.
     pub fn to_image(&self, depth: Depth) -> Image {
         let c = self.layout.crop;
         let window = |x: u32, y: u32, width: u32, height: u32| Window { x: x as i32, y: y as i32, width, height };
@@ -60,6 +60,7 @@ impl Film {
                 image.push(format!("{name}.{channel}"), self.aov_channel(name, c));
             }
         }
+        self.write_bins(&mut image);
         image
     }
 
@@ -117,7 +118,8 @@ mod tests {
     #[test]
     fn bands_of_rows_are_the_rows_of_the_picture() {
         let crop = Rect { x0: 5, y0: 3, x1: 45, y1: 70 };
-        let mut film = Film::new(FilmLayout { size: (80, 80), crop, groups: Vec::new(), aovs: Default::default() });
+        let size = (80, 80);
+        let mut film = Film::new(FilmLayout { size, crop, groups: Vec::new(), aovs: Default::default(), bins: None });
         for tile in &mut film.tiles {
             for (i, sum) in tile.sums.iter_mut().enumerate() {
                 let (x, y) = (tile.rect.x0 + i as u32 % tile.rect.width(), tile.rect.y0 + i as u32 / tile.rect.width());

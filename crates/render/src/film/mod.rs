@@ -7,11 +7,14 @@ pub mod fixed;
 pub mod image;
 pub mod part;
 pub mod relight;
+pub mod spectral;
 
 use crate::observe::SampleId;
 pub use aov::{AovSample, AovSet};
 use kirkas_optics::ColorMode;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, TypeSpec, spec::ANY, spec::NOT_NEGATIVE};
+use spectral::LaneSums;
+pub use spectral::SpectralBins;
 
 /// The table of `[film]`.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -52,6 +55,20 @@ pub const SPEC: TypeSpec = TypeSpec {
             &ColorMode::NAMES,
             "Light as red, green and blue, or as wavelengths: dispersion, true colours of lamps and metals.",
         ),
+        ParamSpec::integer(
+            "spectral_bins",
+            0,
+            (0.0, SpectralBins::MOST as f64),
+            "Also keep the mean radiance per nm in so many bins of wavelength, as EXR layers; for `color = \"spectral\"`.",
+        ),
+        ParamSpec::new(
+            "spectral_range",
+            ParamType::Vector2,
+            Fallback::Vector2(SpectralBins::RANGE),
+            "Wavelengths that the bins share out.",
+        )
+        .unit("nm")
+        .range((SpectralBins::RANGE[0], SpectralBins::RANGE[1])),
         ParamSpec::bool("light_groups", false, "Also keep one layer per light group; `kirkas relight` mixes them anew."),
         ParamSpec::number("clamp", 0.0, "Firefly clamp: the most that one contribution to a sample may bring; 0 = no clamp. It darkens.")
             .unit("radiance")
@@ -98,6 +115,8 @@ pub struct FilmLayout {
     pub groups: Vec<String>,
     /// Extra quantities of the first hit.
     pub aovs: AovSet,
+    /// Light by wavelength as well.
+    pub bins: Option<SpectralBins>,
 }
 
 /// Edge of a tile in pixels.
@@ -123,6 +142,8 @@ pub struct Tile {
     pub sums: Vec<[i128; 3]>,
     /// Per pixel: sums of squares of the sample's red, green, blue, unit 2^-64, at most `i128::MAX`.
     pub squares: Vec<[i128; 3]>,
+    /// Per pixel and spectral bin: sums of radiance per nm, unit 2^-64. Of all light groups together.
+    pub bins: Vec<i128>,
     /// Per pixel.
     pub counts: Vec<Counts>,
     /// AOVs, if any are kept.
@@ -144,6 +165,8 @@ pub struct Film {
 pub struct FinishedSample<'a> {
     /// Per plane.
     pub sums: &'a [[i128; 3]],
+    /// By wavelength, where the film has bins.
+    pub lanes: Option<&'a LaneSums>,
     /// True when a contribution was not finite or absurd.
     pub is_invalid: bool,
     /// First hit.
@@ -154,6 +177,11 @@ impl FilmLayout {
     /// Planes of light.
     pub fn planes(&self) -> usize {
         self.groups.len().max(1)
+    }
+
+    /// Spectral bins of a pixel.
+    fn bin_count(&self) -> usize {
+        self.bins.map_or(0, |b| b.count as usize)
     }
 }
 
@@ -169,6 +197,7 @@ impl Film {
                     rect,
                     sums: vec![[0; 3]; rect.area() * layout.planes()],
                     squares: vec![[0; 3]; rect.area()],
+                    bins: vec![0; rect.area() * layout.bin_count()],
                     counts: vec![Counts::default(); rect.area()],
                     aovs: (!layout.aovs.is_empty()).then(|| aov::AovTile::new(rect.area())),
                     invalid: Vec::new(),
@@ -225,6 +254,10 @@ impl Tile {
             let sum = &mut self.squares[pixel][c];
             *sum = sum.saturating_add(fixed::square(total[c]));
         }
+        if let Some(lanes) = sample.lanes {
+            let bins = self.bins.len() / self.counts.len();
+            lanes.add_to(&mut self.bins[pixel * bins..(pixel + 1) * bins]);
+        }
         if let Some(aovs) = &mut self.aovs {
             aovs.add(pixel, id.sample, &sample.aov);
         }
@@ -246,10 +279,21 @@ impl Tile {
         self.over_valid(pixel, self.sums[pixel * planes + plane])
     }
 
+    /// A pixel's mean radiance in one spectral bin, per nm.
+    pub fn bin_mean(&self, pixel: usize, bin: usize) -> f32 {
+        let bins = self.bins.len() / self.counts.len();
+        (fixed::to_f64(self.bins[pixel * bins + bin]) / self.valid(pixel)) as f32
+    }
+
     fn over_valid(&self, pixel: usize, total: [i128; 3]) -> [f32; 3] {
-        let c = &self.counts[pixel];
-        let n = f64::from((c.taken - c.invalid).max(1));
+        let n = self.valid(pixel);
         total.map(|s| (fixed::to_f64(s) / n) as f32)
+    }
+
+    /// Samples that count; 1 if there are none.
+    fn valid(&self, pixel: usize) -> f64 {
+        let c = &self.counts[pixel];
+        f64::from((c.taken - c.invalid).max(1))
     }
 
     /// Variance of the mean, per channel (unbiased; 0 for fewer than two samples).
@@ -259,8 +303,7 @@ impl Tile {
 
     /// A pixel's mean colour, and the variance of that mean per channel (unbiased; 0 for fewer than two samples).
     pub fn moments(&self, pixel: usize) -> ([f64; 3], [f64; 3]) {
-        let c = &self.counts[pixel];
-        let n = f64::from((c.taken - c.invalid).max(1));
+        let n = self.valid(pixel);
         let planes = self.sums.len() / self.counts.len();
         let sums = &self.sums[pixel * planes..(pixel + 1) * planes];
         let mean: [f64; 3] =

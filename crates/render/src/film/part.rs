@@ -3,7 +3,7 @@
 //! A 128-bit sum is four unsigned 32-bit channels, lowest word first.
 
 use super::aov::{AovSet, AovTile, Ids};
-use super::{Counts, Film, FilmLayout, Rect, fixed};
+use super::{Counts, Film, FilmLayout, Rect, SpectralBins, fixed};
 use kirkas_images::{Attribute, ChannelData, Image};
 
 /// Why an image is no partial image, or two do not fit.
@@ -12,7 +12,7 @@ pub enum PartError {
     /// The integers are missing.
     #[error("the image has no integer layers (`{0}` is missing), so it cannot be merged or resumed exactly")]
     NotAPart(String),
-    /// Size, crop, light groups or AOVs differ.
+    /// Size, crop, light groups, spectral bins or AOVs differ.
     #[error("the images do not fit together: {0}")]
     Different(String),
 }
@@ -34,6 +34,10 @@ pub fn write_part(film: &Film, image: &mut Image) {
             push(format!("sum.{plane}.{channel}"), &|t, i| t.sums[i * planes + plane][c]);
         }
         push(format!("square.{channel}"), &|t, i| t.squares[i][c]);
+    }
+    let bins = film.layout.bin_count();
+    for bin in 0..bins {
+        push(format!("bin.{bin}"), &|t, i| t.bins[i * bins + bin]);
     }
     if !film.layout.aovs.is_empty() {
         for k in 0..VALUES {
@@ -58,6 +62,9 @@ pub fn write_part(film: &Film, image: &mut Image) {
         "kirkas.groups".into(),
         text(film.layout.groups.iter().map(|g| escaped(g)).collect::<Vec<_>>().join("\n")),
     );
+    if let Some(bins) = film.layout.bins {
+        image.attributes.insert("kirkas.spectral_bins".into(), text(bins.to_string()));
+    }
     image.attributes.insert("kirkas.aovs".into(), Attribute::Number(f64::from(film.layout.aovs.0)));
 }
 
@@ -93,6 +100,14 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
         Some(Attribute::Number(n)) => AovSet(*n as u16),
         _ => return Err(missing("kirkas.aovs")),
     };
+    let bins = match image.attributes.get("kirkas.spectral_bins") {
+        None => None,
+        Some(Attribute::Text(t)) => match SpectralBins::parse(t) {
+            Some(bins) if bins.count as usize <= image.channels.len() => Some(bins),
+            _ => return Err(PartError::Different(format!("it cannot have the spectral bins `{t}`"))),
+        },
+        Some(_) => return Err(missing("kirkas.spectral_bins")),
+    };
     let (d, w) = (image.data, image.display);
     if d.x < 0
         || d.y < 0
@@ -103,9 +118,9 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
     }
     let (x0, y0) = (d.x as u32, d.y as u32);
     let crop = Rect { x0, y0, x1: x0 + d.width, y1: y0 + d.height };
-    let layout = FilmLayout { size: (w.width, w.height), crop, groups, aovs };
+    let layout = FilmLayout { size: (w.width, w.height), crop, groups, aovs, bins };
     let mut film = Film::new(layout);
-    let planes = film.layout.planes();
+    let (planes, bin_count) = (film.layout.planes(), film.layout.bin_count());
 
     let integers = |name: &str| -> Result<&[u32], PartError> {
         image.channel(name).and_then(ChannelData::integers).ok_or_else(|| missing(name))
@@ -132,6 +147,10 @@ pub fn read_part(image: &Image) -> Result<Film, PartError> {
         }
         let words = sums(format!("square.{channel}"))?;
         each(&mut |t, i, at| t.squares[i][c] = value(&words, at));
+    }
+    for bin in 0..bin_count {
+        let words = sums(format!("bin.{bin}"))?;
+        each(&mut |t, i, at| t.bins[i * bin_count + bin] = value(&words, at));
     }
     let (taken, invalid) = (integers("kirkas.count.taken")?, integers("kirkas.count.invalid")?);
     let stopped = image.channel("kirkas.count.stopped").and_then(ChannelData::integers);
@@ -175,6 +194,8 @@ impl Film {
                 "their crop windows differ".to_string()
             } else if a.groups != b.groups {
                 "their light groups differ".to_string()
+            } else if a.bins != b.bins {
+                "their spectral bins differ".to_string()
             } else {
                 "their AOVs differ".to_string()
             };
@@ -182,6 +203,7 @@ impl Film {
         }
         for (a, b) in self.tiles.iter_mut().zip(&other.tiles) {
             add(&mut a.sums, &b.sums, i128::wrapping_add);
+            a.bins.iter_mut().zip(&b.bins).for_each(|(x, y)| *x = x.wrapping_add(*y));
             add(&mut a.squares, &b.squares, i128::saturating_add);
             for (x, y) in a.counts.iter_mut().zip(&b.counts) {
                 x.taken += y.taken;

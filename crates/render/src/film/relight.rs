@@ -4,7 +4,8 @@ use super::{Film, fixed};
 
 impl Film {
     /// The image with the light of group `g` multiplied by `scales[g]` per channel, in the integers: each sum is multiplied and
-    /// rounded once to the film's unit, so factors of 1 change no bit. Second moments, which do not know of groups, are gone.
+    /// rounded once to the film's unit, so factors of 1 change no bit. Second moments and spectral bins, which do not know
+    /// of groups, are gone.
     pub fn relit(mut self, scales: &[[f64; 3]]) -> Film {
         for tile in &mut self.tiles {
             for sums in tile.sums.chunks_mut(scales.len()) {
@@ -13,7 +14,9 @@ impl Film {
                 }
             }
             tile.squares.fill([0; 3]);
+            tile.bins.clear();
         }
+        self.layout.bins = None;
         self
     }
 }

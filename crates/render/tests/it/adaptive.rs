@@ -159,7 +159,7 @@ fn a_crop_is_refused() {
 /// A film of 3x3 blocks of grey 1, the one in the middle with the given variance per sample.
 fn film_with_noise_in_the_middle(samples: u32, variance: f64, mean: f64) -> Film {
     let (size, crop) = ((24, 24), Rect { x0: 0, y0: 0, x1: 24, y1: 24 });
-    let mut film = Film::new(FilmLayout { size, crop, groups: Vec::new(), aovs: Default::default() });
+    let mut film = Film::new(FilmLayout { size, crop, groups: Vec::new(), aovs: Default::default(), bins: None });
     for tile in &mut film.tiles {
         for i in 0..tile.counts.len() {
             let (x, y) = tile.place(i);

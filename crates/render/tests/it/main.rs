@@ -28,6 +28,7 @@ mod shapes_areas;
 mod shapes_cases;
 mod shapes_errors;
 mod shapes_offsets;
+mod spectral_bins;
 mod support;
 mod textures;
 mod whitted;
