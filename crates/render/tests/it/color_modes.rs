@@ -3,7 +3,7 @@
 
 use crate::support::{Rgb, expose, one_pixel, pixel, prepared, prepared_with};
 use kirkas_optics::ColorMode;
-use kirkas_render::{Film, Options, prepare};
+use kirkas_render::{Options, prepare};
 use kirkas_scene::files::{FileAccess, Limits, MemoryFiles};
 
 /// The radiance from `(0, 0, 5)` towards the origin.
@@ -126,15 +126,15 @@ fn metals_have_their_colour_in_both_modes() {
 const PRISM: &str = "v 0 0.57735 -1\nv -0.5 -0.288675 -1\nv 0.5 -0.288675 -1\nv 0 0.57735 1\nv -0.5 -0.288675 1\nv 0.5 -0.288675 1\n\
                      f 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\nf 1 3 2\nf 4 5 6\n";
 
-/// The deviation in degrees at which a prism shows a far, narrow slit that shines at one wavelength, nm, when light comes in
-/// at `incidence` degrees.
-fn measured_deviation(glass: &str, nanometres: f64, incidence: f64) -> f64 {
-    const WIDTH: u32 = 201;
-    const FOV: f64 = 1.5;
+const WIDTH: u32 = 201;
+/// Of the picture, degrees.
+const FIELD: f64 = 1.5;
+
+/// A prism before a far, narrow slit whose light comes in at `incidence` degrees, in a picture of one row, and the angle that
+/// the camera looks down, a little more than the slit's.
+fn prism(glass: &str, incidence: f64, radiance: &str, film: &str) -> (String, f64) {
     const FAR: f64 = 1e5;
-    let line = format!("{} 0\n{nanometres} 1\n{} 0\n", nanometres - 0.5, nanometres + 0.5);
     let tilt = (incidence - 30.0).to_radians();
-    // The camera looks a little beside where the slit is expected.
     let aim = tilt + 0.2_f64.to_radians();
     // It looks at the middle of the left face, from where light crosses to the middle of the right one: no ray meets the base.
     const MIDDLE: (f64, f64) = (-0.25, 0.1443);
@@ -142,11 +142,11 @@ fn measured_deviation(glass: &str, nanometres: f64, incidence: f64) -> f64 {
     let slit = (FAR * tilt.cos(), -FAR * tilt.sin());
     let half = FAR * 0.01_f64.to_radians().tan();
     let toml = format!(
-        "[film]\nwidth = {WIDTH}\nheight = 1\ncolor = \"spectral\"\nfilter = \"box\"\n\
+        "[film]\nwidth = {WIDTH}\nheight = 1\ncolor = \"spectral\"\nfilter = \"box\"\n{film}\
          [integrator]\nmin_contribution = 0\n[cameras.eye]\ntype = \"perspective\"\nposition = [{x:?}, {y:?}, 0]\nlook_at = [{:?}, {:?}, 0]\n\
-         up = [0, 0, 1]\nfov = {FOV}\nfov_axis = \"horizontal\"\n\
+         up = [0, 0, 1]\nfov = {FIELD}\nfov_axis = \"horizontal\"\n\
          [materials.glass]\ntype = \"dielectric\"\nior = {{ material = \"{glass}\" }}\n\
-         [materials.line]\ntype = \"emitter\"\ntwo_sided = true\nradiance = {{ spectrum = \"line.spd\" }}\n\
+         [materials.line]\ntype = \"emitter\"\ntwo_sided = true\nradiance = {radiance}\n\
          [objects.prism]\ntype = \"mesh\"\nmaterial = \"glass\"\nfile = \"prism.obj\"\n\
          [objects.slit]\ntype = \"rectangle\"\nmaterial = \"line\"\ncenter = [{:?}, {:?}, 0]\nedge_u = [{:?}, {:?}, 0]\n\
          edge_v = [0, 0, {FAR:?}]\n",
@@ -157,24 +157,50 @@ fn measured_deviation(glass: &str, nanometres: f64, incidence: f64) -> f64 {
         2.0 * half * tilt.sin(),
         2.0 * half * tilt.cos(),
     );
-    let files: [(&str, &[u8]); 2] = [("prism.obj", PRISM.as_bytes()), ("line.spd", line.as_bytes())];
-    let p = prepared_with(&toml, &files, &Options::default());
-    let film = expose(&p, 0..1024).0;
-    let column_of = |film: &Film| {
-        let (mut sum, mut total) = (0.0, 0.0);
-        for i in 0..WIDTH {
-            let [r, g, b] = pixel(film, i, 0);
-            let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-            sum += light * (f64::from(i) + 0.5);
-            total += light;
-        }
-        assert!(total > 0.0, "the slit is not seen");
-        sum / total
-    };
+    (toml, aim.to_degrees())
+}
+
+/// The deviation of light that came in at `incidence`, by where it is in the picture: its centre of gravity.
+fn deviation(light: &[f64], aim: f64, incidence: f64) -> f64 {
+    let total: f64 = light.iter().sum();
+    assert!(total > 0.0, "the slit is not seen");
+    let column = light.iter().enumerate().map(|(i, l)| l * (i as f64 + 0.5)).sum::<f64>() / total;
     // Right in the picture is down in the scene.
-    let across = 2.0 * column_of(&film) / f64::from(WIDTH) - 1.0;
-    let found = aim.to_degrees() - (across * (FOV / 2.0).to_radians().tan()).atan().to_degrees();
-    found + tilt.to_degrees()
+    let across = 2.0 * column / f64::from(WIDTH) - 1.0;
+    aim - (across * (FIELD / 2.0).to_radians().tan()).atan().to_degrees() + incidence - 30.0
+}
+
+/// The deviation in degrees at which a prism shows a slit that shines at one wavelength, nm.
+fn measured_deviation(glass: &str, nanometres: f64, incidence: f64) -> f64 {
+    let (toml, aim) = prism(glass, incidence, "{ spectrum = \"line.spd\" }", "");
+    let line = format!("{} 0\n{nanometres} 1\n{} 0\n", nanometres - 0.5, nanometres + 0.5);
+    let files: [(&str, &[u8]); 2] = [("prism.obj", PRISM.as_bytes()), ("line.spd", line.as_bytes())];
+    let film = expose(&prepared_with(&toml, &files, &Options::default()), 0..1024).0;
+    let luminance = |[r, g, b]: Rgb| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let light: Vec<f64> = (0..WIDTH).map(|i| luminance(pixel(&film, i, 0))).collect();
+    deviation(&light, aim, incidence)
+}
+
+/// One picture of a white slit, and the bins of the three lines in it.
+#[test]
+fn a_prism_spreads_white_light_so_that_each_line_has_its_own_exit_angle() {
+    const INCIDENCE: f64 = 49.3233492526;
+    let bins = "spectral_bins = 180\nspectral_range = [480, 660]\n";
+    let (toml, aim) = prism("N-BK7", INCIDENCE, "10", bins);
+    let p = prepared_with(&toml, &[("prism.obj", PRISM.as_bytes())], &Options::default());
+    let film = expose(&p, 0..4096).0;
+    for (line, nanometres, n) in
+        [("F", 486.1327, 1.52237628973), ("d", 587.5618, 1.5168000345), ("C", 656.2725, 1.51432234726)]
+    {
+        // Snell's law, twice, in a prism of 60 degrees.
+        let inside = (INCIDENCE.to_radians().sin() / n).asin();
+        let exit = (n * (60.0_f64.to_radians() - inside).sin()).asin().to_degrees();
+        let bin = film.layout.bins.and_then(|b| b.bin(nanometres)).expect("a bin of the film");
+        let light: Vec<f64> = film.spectral_bin(bin).into_iter().map(f64::from).collect();
+        let found = deviation(&light, aim, INCIDENCE) - INCIDENCE + 60.0;
+        println!("{line}: leaves at {found:.4} degrees, {exit:.4} expected");
+        assert!((found - exit).abs() < 0.05, "{line}: leaves at {found} degrees, not {exit}");
+    }
 }
 
 #[test]

@@ -21,6 +21,7 @@ mod numbers;
 mod observer;
 mod path;
 mod photon;
+mod rainbow;
 mod samplers;
 mod scale;
 mod shapes;
