@@ -1,12 +1,13 @@
-"""Time to an error, beside Mitsuba 3: `converge.py --kirkas BINARY [--quick] [--scene NAME,...] [--peer NAME,...] [--json FILE] [--folder DIR]`.
+"""Time to an error, beside Mitsuba 3, Cycles and LuxCore.
 
-For each scene of `scenes.py`: a reference to which both renderers add half, and on whose means they must agree; then the error that the peer
-reaches at a number of samples that keeps it busy for 10 s; then the time that Kirkas takes to that error, between two numbers of samples
-measured. 8 seeds each, render times alone: start-up, loading and compilation are told apart. All pictures stay in the folder;
-`errors.py` computes the errors from them."""
+For each scene of `scenes.py`: a reference to which Kirkas and Mitsuba add half, and on whose means they must agree; of each peer the
+sampler that does best in a short trial; the error that the peer reaches at a number of samples that keeps it busy for 10 s; then the
+time that Kirkas takes to that error, between two numbers of samples measured. 8 seeds each, two threads, render times alone: start-up,
+loading and compilation are told apart. All pictures stay in the folder; `errors.py` computes the rows from them."""
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 from math import exp, log
@@ -16,115 +17,172 @@ import numpy as np
 
 import errors
 import scenes
+import text_kirkas
+import text_mitsuba
 
 HERE = Path(__file__).parent
-KIRKAS = "kirkas"
+MITSUBA = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
+# Program, the variable that names its Python, samplers to try, and scenes (all where None).
+PEERS = {
+    "llvm_ad_rgb": ("peer_mitsuba.py", None, MITSUBA, None),
+    "scalar_rgb": ("peer_mitsuba.py", None, MITSUBA, None),
+}
+
+
+def say(text):
+    print(text, flush=True)
+
+
+class Bench:
+    """One scene: its files, its reference, its runs."""
+
+    def __init__(self, args, name):
+        self.args, self.name, self.folder = args, name, args.folder
+        scene = scenes.SCENES[name]()
+        scene.size = args.size
+        for old in [*self.folder.glob(f"{name}.*.npy"), *self.folder.glob(f"{name}.json")]:
+            old.unlink()
+        text_kirkas.write(scene, self.folder, name)
+        text_mitsuba.write(scene, self.folder, name)
+        self.truth, self.points, self.runs = None, [], {"kirkas": [], "peers": []}
+
+    def kirkas(self, spp, seeds, stem):
+        seconds = []
+        for seed in seeds:
+            exr, stats = self.folder / "last.exr", self.folder / "last.stats"
+            command = [self.args.kirkas, "render", self.folder / f"{self.name}.toml", "-o", exr, "--spp", spp, "--seed", seed]
+            subprocess.run([str(c) for c in [*command, "--threads", 2, "--stats", stats, "--quiet"]], check=True)
+            seconds.append(json.loads(stats.read_text())["seconds"])
+            np.save(self.folder / f"{stem}_{seed}.npy", read(exr))
+        start = float(np.median([s["total"] - s["render"] for s in seconds]))
+        return {"who": "kirkas", "stem": stem, "spp": spp, "start": start, "render": float(np.median([s["render"] for s in seconds]))}
+
+    def peer(self, who, sampler, spp, seeds, stem):
+        program, variable, _, _ = PEERS[who]
+        python = os.environ[variable] if variable else sys.executable
+        command = [python, HERE / program, who, self.folder, self.name, self.args.size, sampler, spp, ",".join(map(str, seeds)), self.folder / stem]
+        done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"{who}: {program} failed\n{done.stdout[-2000:]}{done.stderr[-4000:]}")
+        told = json.loads(done.stdout.splitlines()[-1])
+        told["render"] = float(np.median(told["render"]))
+        return {"who": who, "stem": stem, "sampler": sampler} | told
+
+    def reference(self):
+        """As many samples of each, in parts with seeds of their own, so that agreement can be judged."""
+        parts = range(101, 101 + 2 * self.args.seeds)
+        self.kirkas(self.args.reference, parts, f"{self.name}.reference-kirkas")
+        self.peer("llvm_ad_rgb", "independent", self.args.reference, parts, f"{self.name}.reference-peer")
+        ours, theirs = (errors.seeds(self.folder, f"{self.name}.reference-{who}") for who in ("kirkas", "peer"))
+        means, outliers = errors.agreement(ours, theirs)
+        self.truth = errors.reference(self.folder, self.name)
+        say(f"{self.name}: means agree to {100 * means:.2f} %, {100 * outliers:.2f} % of blocks differ")
+
+    def best_sampler(self, who):
+        """The sampler with the least error x time at a fifth of the work, and its samples per second."""
+        samplers = PEERS[who][2]
+        spp, stem = 16, f"{self.name}.trial"
+        while (run := self.peer(who, samplers[0], spp, [99], stem))["render"] < 0.05 * self.args.busy and spp < 2**20:
+            spp *= 4
+        spp = max(1, int(0.2 * self.args.busy * run["spp"] / run["render"]))
+        costs = {}
+        for sampler in samplers:
+            stem = f"{self.name}.trial-{who}-{sampler}"
+            run = self.peer(who, sampler, spp, [98, 99], stem)
+            cost = errors.error(self.folder, stem, self.truth) * run["render"]
+            costs[sampler] = (cost, run["spp"] / run["render"])
+        say(f"{self.name:12} {who:12} error x time: " + ", ".join(f"{s} {c:.2e}" for s, (c, _) in costs.items()))
+        best = min(costs, key=lambda s: costs[s][0])
+        return best, costs[best][1]
+
+    def ours(self, spp, seeds):
+        run = self.kirkas(spp, seeds, f"{self.name}.kirkas.{spp}")
+        self.runs["kirkas"].append(run)
+        self.points.append((spp, errors.error(self.folder, run["stem"], self.truth), run["render"]))
+
+    def race(self, who):
+        """A peer's error after so long, and Kirkas on both sides of it."""
+        seeds = range(1, 1 + self.args.seeds)
+        sampler, rate = self.best_sampler(who)
+        spp = max(1, int(rate * self.args.busy * 1.05))
+        run = self.peer(who, sampler, spp, seeds, f"{self.name}.{who}")
+        self.runs["peers"].append(run)
+        error = errors.error(self.folder, run["stem"], self.truth)
+        if not self.points:
+            self.ours(max(4, run["spp"] // 2), seeds)
+        for _ in range(8):
+            want, _ = errors.between(error, self.points)
+            low, high = errors.bracket(error, self.points)
+            below, above = max(1, int(want / 1.12)), int(want * 1.12) + 1
+            if not low or low[0] < below / 1.1:
+                guess = below
+            elif not high or high[0] > above * 1.1:
+                guess = above
+            else:
+                break
+            if any(guess == p[0] for p in self.points):
+                break
+            self.ours(guess, seeds)
+        (self.folder / f"{self.name}.json").write_text(json.dumps(self.runs, indent=1))
+        _, seconds = errors.between(error, self.points)
+        told = f"{self.name:12} {who:12} {sampler:11} {run['spp']:6} spp {run['render']:7.2f} s  error {error:.2e}"
+        say(f"{told}  kirkas {seconds:7.2f} s  x {run['render'] / seconds:.2f}")
 
 
 def read(path):
     import mitsuba as mi
 
-    if not mi.variant():
-        mi.set_variant("scalar_rgb")
     return np.array(mi.Bitmap(str(path)))[..., :3].astype(np.float32)
 
 
-def kirkas(binary, folder, name, spp, seeds, stem):
-    seconds = []
-    for seed in seeds:
-        exr, stats = folder / "last.exr", folder / "last.stats"
-        command = [binary, "render", folder / f"{name}.toml", "-o", exr, "--spp", spp, "--seed", seed, "--threads", 2, "--stats", stats, "--quiet"]
-        subprocess.run([str(c) for c in command], check=True)
-        seconds.append(json.loads(stats.read_text())["seconds"])
-        np.save(folder / f"{stem}_{seed}.npy", read(exr))
-    start = float(np.median([s["total"] - s["render"] for s in seconds]))
-    return {"who": KIRKAS, "spp": spp, "start": start, "first": 0.0, "render": float(np.median([s["render"] for s in seconds]))}
-
-
-def mitsuba(variant, folder, name, spp, seeds, stem):
-    command = [sys.executable, HERE / "peer.py", variant, folder / f"{name}.xml", spp, ",".join(map(str, seeds)), folder / stem]
-    done = subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True)
-    told = json.loads(done.stdout.splitlines()[-1])
-    return {"who": variant, "spp": spp, "start": told["start"], "first": told["first"], "render": float(np.median(told["render"]))}
-
-
-def converge(args, name, folder):
-    scene = scenes.SCENES[name]()
-    scenes.kirkas(scene, folder, name)
-    scenes.mitsuba(scene, folder, name)
-    count = 3 if args.quick else 8
-    seeds = list(range(1, count + 1))
-    busy, reference_spp = (2.0, 512) if args.quick else (10.0, 4096)
-
-    # The reference: as many samples of each, in parts with seeds of their own, so that agreement can be judged.
-    parts = range(101, 101 + count)
-    kirkas(args.kirkas, folder, name, reference_spp, parts, f"{name}.reference-kirkas")
-    mitsuba("llvm_ad_rgb" if "llvm_ad_rgb" in args.peers else args.peers[0], folder, name, reference_spp, parts, f"{name}.reference-peer")
-    ours, theirs = errors.seeds(folder, f"{name}.reference-kirkas"), errors.seeds(folder, f"{name}.reference-peer")
-    means, outliers = errors.agreement(ours, theirs)
-    reference = (np.mean(ours, axis=0) + np.mean(theirs, axis=0)) / 2
-    np.save(folder / f"{name}.reference.npy", reference.astype(np.float32))
-    print(f"{name}: means agree to {100 * means:.2f} %, {100 * outliers:.2f} % of blocks differ", flush=True)
-
-    rows, runs = [], []
-    mean_error = lambda stem: float(np.mean([errors.relative_mse(x, reference) for x in errors.seeds(folder, stem)]))
-    for peer in args.peers:
-        trial = mitsuba(peer, folder, name, 16, [99], f"{name}.trial")
-        spp = max(16, int(16 * busy / trial["render"]))
-        spp = (spp + 63) // 64 * 64 if peer.startswith("llvm") and spp > 64 else spp
-        theirs = mitsuba(peer, folder, name, spp, seeds, f"{name}.{peer}.{spp}")
-        error = mean_error(f"{name}.{peer}.{spp}")
-        runs.append(theirs)
-        # Ours: a first guess, then from its error (which falls as one over the samples) one on each side of the peer's.
-        points = {}
-        guess = max(4, spp // 2)
-        for _ in range(4):
-            run = kirkas(args.kirkas, folder, name, guess, seeds, f"{name}.{KIRKAS}.{guess}")
-            runs.append(run)
-            points[guess] = (mean_error(f"{name}.{KIRKAS}.{guess}"), run["render"])
-            at = sorted(points.items())
-            if at[0][1][0] >= error >= at[-1][1][0]:
-                break
-            nearest = at[-1] if at[-1][1][0] > error else at[0]
-            want = nearest[0] * nearest[1][0] / error
-            guess = int(want * 1.15 + 1) if want > nearest[0] else max(1, int(want / 1.15))
-            if guess in points:
-                break
-        at = sorted(points.items())
-        above = [p for p in at if p[1][0] >= error] or at[:1]
-        below = [p for p in at if p[1][0] <= error] or at[-1:]
-        (_, (e0, t0)), (_, (e1, t1)) = above[-1], below[0]
-        part = 0.0 if e0 == e1 else (log(e0) - log(error)) / (log(e0) - log(e1))
-        seconds = exp(log(t0) + part * (log(t1) - log(t0)))
-        row = {"scene": name, "peer": peer, "kirkas_seconds": seconds, "peer_seconds": theirs["render"], "ratio": theirs["render"] / seconds, "error": error}
-        row |= {"peer_spp": spp, "peer_start": theirs["start"], "peer_first": theirs["first"], "kirkas_start": runs[-1]["start"], "means": means, "outliers": outliers}
-        rows.append(row)
-        print(f"{name:12} {peer:12} {spp:6} spp {theirs['render']:7.2f} s  error {error:.2e}  kirkas {seconds:7.2f} s  x {row['ratio']:.2f}", flush=True)
-    (folder / f"{name}.json").write_text(json.dumps(runs))
-    return rows
+def options():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--kirkas", required=True, help="the program")
+    parser.add_argument("--quick", action="store_true", help="3 seeds, 2 s, a coarse reference")
+    parser.add_argument("--scene", default=",".join(scenes.SCENES), help="scenes, by commas [all]")
+    parser.add_argument("--peer", default=",".join(PEERS), help="peers, by commas [all]")
+    parser.add_argument("--size", type=int, default=256, help="pixels a side, a multiple of 8 [256]")
+    parser.add_argument("--busy", type=float, help="seconds that keep a peer busy [10]")
+    parser.add_argument("--seeds", type=int, help="pictures to each error [8]")
+    parser.add_argument("--reference", type=int, help="samples of each part of the reference, two parts to a seed and renderer [512]")
+    parser.add_argument("--json", type=Path, help="write the rows there")
+    parser.add_argument("--folder", type=Path, default=Path("target/bench/converge"), help="keeps the pictures")
+    args = parser.parse_args()
+    args.busy = args.busy or (2.0 if args.quick else 10.0)
+    args.seeds = args.seeds or (3 if args.quick else 8)
+    args.reference = args.reference or (128 if args.quick else 512)
+    args.peers = []
+    for who in args.peer.split(","):
+        variable = PEERS[who][1]
+        if variable and variable not in os.environ:
+            say(f"{who} is left out: {variable} does not name a Python that has it")
+        else:
+            args.peers.append(who)
+    return args
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--kirkas", required=True)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--scene", default=",".join(scenes.SCENES))
-    parser.add_argument("--peer", default="llvm_ad_rgb,scalar_rgb")
-    parser.add_argument("--json", type=Path)
-    parser.add_argument("--folder", type=Path, default=Path("target/bench/converge"))
-    args = parser.parse_args()
-    args.peers = args.peer.split(",")
+    args = options()
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:2])
     args.folder.mkdir(parents=True, exist_ok=True)
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
     mi.Bitmap(scenes.sky_picture()).write(str(args.folder / "sky.exr"))
-    rows = []
     for name in args.scene.split(","):
-        rows += converge(args, name, args.folder)
-    for peer in args.peers:
-        ratios = [r["ratio"] for r in rows if r["peer"] == peer]
-        print(f"{peer:12} geometric mean x {exp(sum(map(log, ratios)) / len(ratios)):.2f}, least x {min(ratios):.2f}")
+        bench = Bench(args, name)
+        bench.reference()
+        for who in args.peers:
+            if name in (PEERS[who][3] or scenes.SCENES):
+                bench.race(who)
+    # The rows come from the pictures alone, by a program of its own.
+    done = subprocess.run([sys.executable, HERE / "errors.py", args.folder], check=True, capture_output=True, text=True)
+    rows = [row for row in json.loads(done.stdout) if row["scene"] in args.scene.split(",")]
+    for who in args.peers:
+        ratios = [r["ratio"] for r in rows if r["peer"] == who]
+        if ratios:
+            say(f"{who:12} geometric mean x {exp(sum(map(log, ratios)) / len(ratios)):.2f}, least x {min(ratios):.2f}")
     if args.json:
         args.json.write_text(json.dumps(rows, indent=1))
 

@@ -1,36 +1,28 @@
-"""Render a scene with Mitsuba 3 in this process: `peer.py VARIANT SCENE.xml SPP SEED,SEED... OUT` writes OUT_SEED.npy and prints JSON.
-Start-up and compilation are told apart: a first render with one sample per pixel carries them."""
+"""What the peers' programs share: `peer_X.py VARIANT FOLDER SCENE SIZE SAMPLER SPP SEED,SEED... OUT` renders a scene with two threads,
+once for each seed, writes OUT_SEED.npy (linear RGB) and prints JSON: the samples truly taken, and seconds to load (`start`), for a
+first short render that carries compilation and the like (`first`), and for each picture (`render`)."""
 
 import json
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 
-variant, scene, spp, seeds, out = sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4].split(","), sys.argv[5]
-begin = time.perf_counter()
-import mitsuba as mi
 
-mi.set_variant(variant)
-loaded = mi.load_file(scene)
-ready = time.perf_counter()
-
-
-def picture(spp, seed):
-    # As the variants that compile want it: no more samples at once than memory holds.
-    passes = max(1, spp // 64) if variant.startswith("llvm") else 1
-    total = 0
-    for i in range(passes):
-        total = total + np.array(mi.render(loaded, spp=spp // passes, seed=seed * 1000003 + i))
-    return total / passes
-
-
-picture(min(64, spp) if variant.startswith("llvm") else 1, 0)
-warm = time.perf_counter()
-seconds = []
-for seed in seeds:
-    start = time.perf_counter()
-    image = picture(spp, int(seed))
-    seconds.append(time.perf_counter() - start)
-    np.save(f"{out}_{seed}.npy", image[..., :3].astype(np.float32))
-print(json.dumps({"start": ready - begin, "first": warm - ready, "render": seconds}))
+def main(load):
+    """`load(variant, folder, scene, size, sampler)` gives an object with `warm(spp)` and `picture(spp, seed) -> (image, samples)`."""
+    variant, folder, scene, size, sampler, spp, seeds, out = sys.argv[1:]
+    spp = int(spp)
+    begin = time.perf_counter()
+    peer = load(variant, Path(folder), scene, int(size), sampler)
+    ready = time.perf_counter()
+    peer.warm(spp)
+    warm = time.perf_counter()
+    seconds = []
+    for seed in seeds.split(","):
+        start = time.perf_counter()
+        image, samples = peer.picture(spp, int(seed))
+        seconds.append(time.perf_counter() - start)
+        np.save(f"{out}_{seed}.npy", image[..., :3].astype(np.float32))
+    print("\n" + json.dumps({"spp": samples, "start": ready - begin, "first": warm - ready, "render": seconds}))
