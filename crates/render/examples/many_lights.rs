@@ -1,6 +1,6 @@
 //! What many lights cost: the same total power from ten lamps and from ten thousand, chosen by tree, by power and evenly.
 //!
-//! `cargo run --release -p kirkas-render --example many_lights [-- panes|balls|wide-balls]`: triangles of 4 cm; balls that together
+//! `cargo run --release -p kirkas-render --example many_lights [-- panes|mesh|balls|wide-balls]`: triangles of 4 cm; the same in one mesh; balls that together
 //! have the surface of ten of 2 cm radius, however many they are; balls of 2 cm, thousands of which hide each other.
 //! Seconds are of processor time, the least of some renders, the cases taking turns. Noise is the relative variance of a pixel
 //! over seeds, the greatest 0.1 % of pixels left out; cost is time times noise, which is in proportion to the time to any given
@@ -24,12 +24,14 @@ const SAMPLES: u32 = 16;
 #[derive(Clone, Copy)]
 enum Shape {
     Panes,
+    Mesh,
     Balls,
     WideBalls,
 }
 
 fn main() {
     let shape = match std::env::args().nth(1).as_deref() {
+        Some("mesh") => Shape::Mesh,
         Some("balls") => Shape::Balls,
         Some("wide-balls") => Shape::WideBalls,
         _ => Shape::Panes,
@@ -90,7 +92,7 @@ fn scene(shape: Shape, count: u32, selection: &str, seed: u64) -> String {
          [materials.white]\ntype = \"lambert\"\nreflectance = 0.6\n\
          [materials.lamp]\ntype = \"emitter\"\nunit = \"W\"\nradiance = 1\nintensity = {}\n\
          [objects.floor]\ntype = \"plane\"\nmaterial = \"white\"\n",
-        1000.0 / f64::from(count)
+        if let Shape::Mesh = shape { 1000.0 } else { 1000.0 / f64::from(count) }
     );
     let mut random = Random::new(1);
     let mut within = |low: f64, high: f64| low + (high - low) * f64::from(random.number());
@@ -104,18 +106,26 @@ fn scene(shape: Shape, count: u32, selection: &str, seed: u64) -> String {
         )
         .expect("text grows");
     }
+    let mut vertices = String::new();
     for i in 0..count {
         let [x, y, z] = [within(-8.0, 8.0), within(1.2, 3.0), within(-8.0, 8.0)];
         let ball = |radius: f64| format!("type = \"sphere\"\nradius = {radius}\ncenter = [{x}, {y}, {z}]");
+        let corners = [[x, y, z], [x + 0.04, y, z], [x, y, z + 0.04]];
         let body = match shape {
-            Shape::Panes => {
-                let corners = [[x, y, z], [x + 0.04, y, z], [x, y, z + 0.04]];
-                format!("type = \"triangle\"\nvertices = {corners:?}")
+            Shape::Mesh => {
+                corners.iter().for_each(|c| write!(vertices, "{c:?},").expect("text grows"));
+                continue;
             }
+            Shape::Panes => format!("type = \"triangle\"\nvertices = {corners:?}"),
             Shape::Balls => ball(0.02 * (10.0 / f64::from(count)).sqrt()),
             Shape::WideBalls => ball(0.02),
         };
         writeln!(s, "[objects.lamp{i}]\n{body}\nmaterial = \"lamp\"\nvisible = false").expect("text grows");
+    }
+    if let Shape::Mesh = shape {
+        let faces: Vec<u32> = (0..3 * count).collect();
+        let body = format!("type = \"mesh\"\nvertices = [{vertices}]\nfaces = {faces:?}");
+        writeln!(s, "[objects.lamps]\n{body}\nmaterial = \"lamp\"\nvisible = false").expect("text grows");
     }
     s
 }

@@ -330,7 +330,8 @@ fn compile(
     });
     let radius = scene_radius(&world, &aggregates, &instances);
     let powers: Vec<f64> = lights.iter().map(|l| l.lamp.power(&materials, &textures, radius)).collect();
-    let picker = LightPicker::new(&singles.params(Kind::Integrator), &lights, &materials, &powers);
+    let (picker, pieces) =
+        LightPicker::new(&singles.params(Kind::Integrator), &lights, (&materials, &textures), &powers);
 
     // What rays search.
     let geometry = |parts: &[PlacedPart], overrides: &[u32]| -> Vec<Geometry> {
@@ -415,6 +416,7 @@ fn compile(
         materials,
         textures,
         picker,
+        pieces,
         lights,
         ambient,
         background,

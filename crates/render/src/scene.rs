@@ -4,6 +4,7 @@ use crate::background::Background;
 use crate::camera::Camera;
 use crate::integrators::{Blocker, MediumStack, ShadowRay};
 use crate::lights::pick::LightPicker;
+use crate::lights::pieces::Pieces;
 use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
 use crate::media::{Volume, Way};
@@ -85,8 +86,10 @@ pub struct Scene {
     pub lights: Vec<LightEntry>,
     /// Ambient lights and their groups.
     pub ambient: Vec<(Spectrum, u32)>,
-    /// Chooses among `lights`.
+    /// Chooses among `lights`, or their `pieces`.
     pub picker: LightPicker,
+    /// Lights in pieces: what the picker chooses has a number of its own.
+    pub pieces: Pieces,
     /// What is seen where nothing is hit.
     pub background: Arc<Background>,
     /// Its number among `lights`, if it shines.
@@ -297,11 +300,22 @@ impl Scene {
         (number != NO_LIGHT).then_some(number)
     }
 
-    /// The density per solid angle with which [`Scene::sample_light`] of light number `light`, the one of `hit`, would have found
-    /// `hit` from `from`.
-    pub fn light_pdf(&self, light: u32, hit: &SurfaceHit, from: DVec3, time: f64) -> f32 {
-        match &self.lights[light as usize].lamp {
-            Lamp::Area(l) => l.pdf(from, hit.position, hit.normal, time),
+    /// The number by which the picker knows what was hit, if it can be picked.
+    pub fn pickable_of(&self, hit: &SurfaceHit) -> Option<u32> {
+        self.light_of(hit).map(|light| self.pieces.number(light, hit.hit.primitive))
+    }
+
+    /// True when there is something to choose from.
+    pub fn has_choice(&self) -> bool {
+        self.lights.len() > 1 || !self.pieces.is_empty()
+    }
+
+    /// The density per solid angle with which [`Scene::sample_picked`] of `number`, that of `hit`, would have found `hit` from
+    /// `from`.
+    pub fn light_pdf(&self, number: u32, hit: &SurfaceHit, from: DVec3, time: f64) -> f32 {
+        match (&self.lights[self.pieces.light(number) as usize].lamp, self.pieces.area(number)) {
+            (Lamp::Area(l), None) => l.pdf(from, hit.position, hit.normal, time),
+            (Lamp::Area(l), Some(area)) => l.pdf_by_area(area, from, hit.position, hit.normal, time),
             _ => 0.0,
         }
     }
@@ -316,6 +330,25 @@ impl Scene {
         match self.light_of(hit).map(|n| &self.lights[n as usize].lamp) {
             Some(Lamp::Area(l)) => l.per_power(),
             _ => std::f64::consts::FRAC_1_PI,
+        }
+    }
+
+    /// A sample of what the picker knows by `number` as seen from `from`.
+    pub fn sample_picked(
+        &self,
+        lanes: &Lanes,
+        number: u32,
+        from: DVec3,
+        time: f64,
+        u: (f32, f32),
+    ) -> Option<LightSample> {
+        let light = &self.lights[self.pieces.light(number) as usize];
+        match (&light.lamp, self.pieces.is_empty()) {
+            (Lamp::Area(l), false) => match self.pieces.sample(number, l, u) {
+                Some(s) => l.sample_at(s, lanes, (&self.materials, &self.textures), from, time),
+                None => self.sample_light(lanes, light, from, time, u),
+            },
+            _ => self.sample_light(lanes, light, from, time, u),
         }
     }
 

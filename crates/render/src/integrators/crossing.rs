@@ -40,6 +40,7 @@ pub fn ask(
     light: Light,
     lamp: u32,
 ) -> Option<ShadowRay> {
+    let lamp = scene.pieces.light(lamp);
     let (blocked_by, light) = if scene.has_hulls {
         (Blocker::AllButHulls, light)
     } else {

@@ -35,11 +35,10 @@ impl<'a> Particle<'a> {
 
     /// One light, and what comes from it unless something is in the way.
     pub(super) fn ask_light(&self, scene: &Scene, path: &PathState, sampler: &Sampler) -> Option<ShadowRay> {
-        let u = if scene.lights.len() > 1 { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
+        let u = if scene.has_choice() { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
         let (number, probability) = scene.picker.pick(self.position, DVec3::ZERO, u)?;
         let u = sampler.pair(combine(path.branch, LIGHT));
-        let lamp = &scene.lights[number as usize];
-        let s = scene.sample_light(&path.lanes, lamp, self.position, f64::from(path.ray.time), u)?;
+        let s = scene.sample_picked(&path.lanes, number, self.position, f64::from(path.ray.time), u)?;
         let wi = s.direction.as_vec3();
         let weight = match s.pdf > 0.0 {
             true => power_heuristic(probability * s.pdf, self.phase.pdf(&path.lanes, self.shares, self.wo, wi)),

@@ -171,7 +171,7 @@ pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
 pub(super) fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
     let emitted = scene.emitted(&path.lanes, hit);
     if !emitted.is_black() {
-        let weight = match (&path.last, scene.light_of(hit)) {
+        let weight = match (&path.last, scene.pickable_of(hit)) {
             (Some(last), Some(light)) => {
                 let pdf = scene.light_pdf(light, hit, last.position, f64::from(path.ray.time));
                 last.weight(scene, light, pdf)
@@ -230,11 +230,10 @@ impl<'a> Vertex<'a> {
         rivals: LobeSet,
     ) -> Option<ShadowRay> {
         let hit = self.hit;
-        let u = if scene.lights.len() > 1 { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
+        let u = if scene.has_choice() { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
         let (number, probability) = scene.picker.pick(hit.position, self.normal, u)?;
-        let light = &scene.lights[number as usize];
         let u = sampler.pair(combine(path.branch, LIGHT));
-        let s = scene.sample_light(&path.lanes, light, hit.position, f64::from(path.ray.time), u)?;
+        let s = scene.sample_picked(&path.lanes, number, hit.position, f64::from(path.ray.time), u)?;
         let wi = hit.frame.to_local(s.direction.as_vec3());
         if !crossing::agrees(hit, s.direction, wi.z) {
             return None;

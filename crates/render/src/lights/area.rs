@@ -4,14 +4,14 @@
 use super::emit::EmittedRay;
 use super::tree::LightBounds;
 use super::{Cone, LightSample, Target};
-use crate::materials::Material;
+use crate::materials::{Emission, Material};
 use crate::shapes::{AreaSample, Surface};
 use crate::textures::{TexturePoint, Textures};
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::warp::square_to_cosine_hemisphere;
-use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame};
+use kirkas_geometry::{AnimatedTransform, Bounds3, DAffine3, DVec3, Frame};
 use kirkas_optics::Lanes;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -46,9 +46,34 @@ impl AreaLight {
         time: f64,
         u: (f32, f32),
     ) -> Option<LightSample> {
-        let emission = materials[self.material as usize].emission.as_ref()?;
         let map = self.placement.as_ref().map(|p| p.at(time));
         let (s, per_solid_angle) = self.choose(map.as_ref(), from, u)?;
+        self.seen(&s, per_solid_angle, lanes, (materials, textures), from)
+    }
+
+    /// The light of a point of the surface, chosen in part space by area alone.
+    pub fn sample_at(
+        &self,
+        s: AreaSample,
+        lanes: &Lanes,
+        things: (&[Material], &Textures),
+        from: DVec3,
+        time: f64,
+    ) -> Option<LightSample> {
+        let s = self.placement.as_ref().map_or(s, |p| placed(s, &p.at(time)));
+        self.seen(&s, None, lanes, things, from)
+    }
+
+    /// What a chosen point, in the world, sends towards `from`; without a density per solid angle that of its area counts.
+    fn seen(
+        &self,
+        s: &AreaSample,
+        per_solid_angle: Option<f64>,
+        lanes: &Lanes,
+        (materials, textures): (&[Material], &Textures),
+        from: DVec3,
+    ) -> Option<LightSample> {
+        let emission = materials[self.material as usize].emission.as_ref()?;
         let to_light = s.position - from;
         let r2 = to_light.length_squared();
         if !(r2 > 0.0) {
@@ -116,29 +141,37 @@ impl AreaLight {
     /// The density per solid angle with which [`AreaLight::sample`] finds, from `from`, the point at `position` with the unit
     /// outward `normal`.
     pub fn pdf(&self, from: DVec3, position: DVec3, normal: DVec3, time: f64) -> f32 {
-        let to_light = position - from;
-        let r2 = to_light.length_squared();
-        let facing = -to_light.dot(normal);
-        let cosine = facing.abs() / r2.sqrt();
-        if cosine.is_nan() || cosine <= 0.0 {
-            return 0.0;
-        }
+        let facing = (from - position).dot(normal);
         let map = self.placement.as_ref().map(|p| p.at(time));
-        let inverse = map.map(|m| m.inverse());
-        let local = inverse.map_or(from, |i| i.transform_point3(from));
+        let local = map.map_or(from, |m| m.inverse().transform_point3(from));
         if let Some(pdf) = self.surface.pdf_toward(local).filter(|_| map.as_ref().is_none_or(is_similarity)) {
             return if facing > 0.0 { pdf as f32 } else { 0.0 };
         }
-        let growth = match (&map, &inverse) {
-            (Some(m), Some(i)) => area_element_growth(m, i, m.matrix3.transpose() * normal),
-            _ => 1.0,
-        };
-        self.surface.area().map_or(0.0, |area| (r2 / (area * growth * cosine)) as f32)
+        self.surface.area().map_or(0.0, |area| self.pdf_by_area(area, from, position, normal, time))
+    }
+
+    /// The same where a point is chosen evenly from `area` of part space.
+    pub fn pdf_by_area(&self, area: f64, from: DVec3, position: DVec3, normal: DVec3, time: f64) -> f32 {
+        let to_light = position - from;
+        let r2 = to_light.length_squared();
+        let cosine = to_light.dot(normal).abs() / r2.sqrt();
+        if cosine.is_nan() || cosine <= 0.0 {
+            return 0.0;
+        }
+        let growth = self.placement.as_ref().map_or(1.0, |p| {
+            let m = p.at(time);
+            area_element_growth(&m, &m.inverse(), m.matrix3.transpose() * normal)
+        });
+        (r2 / (area * growth * cosine)) as f32
     }
 
     /// Where it is at any time, and the ways it faces.
     pub fn reach(&self, power: f64, is_two_sided: bool) -> LightBounds {
-        let (bounds, normals) = (self.surface.bounds(), self.surface.normals());
+        self.reach_of(self.surface.bounds(), self.surface.normals(), power, is_two_sided)
+    }
+
+    /// The same of a part with these bounds and normals, in part space.
+    pub fn reach_of(&self, bounds: Bounds3, normals: Cone, power: f64, is_two_sided: bool) -> LightBounds {
         let (bounds, normals) = match &self.placement {
             None => (bounds, normals),
             Some(p) if p.is_moving() => {
@@ -167,14 +200,29 @@ impl AreaLight {
         let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let count = if emission.is_textured() { TEXTURE_PROBES } else { 1 };
-        let radiance = |i| {
-            let s = self.surface.sample_area(owen_sobol_2d(i, 0))?;
-            let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
-            let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
-            Some(emission.radiance(&Lanes::RGB, textures, &at, self.per_power()).sum())
-        };
+        let radiance = |i| Some(self.glow(emission, textures, &self.surface.sample_area(owen_sobol_2d(i, 0))?));
         let mean = (0..count).filter_map(radiance).sum::<f64>() / f64::from(count);
         PI * self.area * sides * mean
+    }
+
+    /// True when it may glow differently from place to place.
+    pub fn is_textured(&self, materials: &[Material]) -> bool {
+        materials[self.material as usize].emission.as_ref().is_some_and(Emission::is_textured)
+    }
+
+    /// About the mean radiance of a facet, all lanes together.
+    pub fn glow_of_facet(&self, facet: u32, materials: &[Material], textures: &Textures) -> f64 {
+        const PROBES: u32 = 4;
+        let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
+        let samples = (0..PROBES).filter_map(|i| self.surface.sample_facet(facet, owen_sobol_2d(i, 0)));
+        samples.map(|s| self.glow(emission, textures, &s)).sum::<f64>() / f64::from(PROBES)
+    }
+
+    /// Radiance at a point of part space, all lanes together.
+    fn glow(&self, emission: &Emission, textures: &Textures, s: &AreaSample) -> f64 {
+        let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
+        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
+        emission.radiance(&Lanes::RGB, textures, &at, self.per_power()).sum()
     }
 
     /// A point in the world with its density by area, and by solid angle if the shape sampled that.

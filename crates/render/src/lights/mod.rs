@@ -15,6 +15,7 @@ mod cone;
 mod directional;
 pub mod emit;
 pub mod pick;
+pub mod pieces;
 mod point;
 mod spot;
 pub mod tree;

@@ -6,8 +6,10 @@
 //! where it may come from all around (boundaries that let light through, points in space).
 
 use super::LightEntry;
+use super::pieces::Pieces;
 use super::tree::{LightBounds, LightTree, more_digits};
 use crate::materials::Material;
+use crate::textures::Textures;
 use kirkas_geometry::DVec3;
 use kirkas_scene::{ParamSpec, Params};
 
@@ -67,13 +69,20 @@ impl LightPicker {
     }
 
     /// As the integrator's parameters have it, for lights with these powers.
-    pub fn new(integrator: &Params, lights: &[LightEntry], materials: &[Material], powers: &[f64]) -> Self {
+    /// Beside it the pieces among which it chooses.
+    pub fn new(
+        integrator: &Params,
+        lights: &[LightEntry],
+        (materials, textures): (&[Material], &Textures),
+        powers: &[f64],
+    ) -> (Self, Pieces) {
         let can_choose = integrator.spec().params.iter().any(|row| row.name == SELECTION.name);
         match can_choose.then(|| integrator.text(SELECTION.name)).flatten() {
-            Some("uniform") => Self::uniform(lights.len()),
-            Some("power") => Self::by_power(powers),
+            Some("uniform") => (Self::uniform(lights.len()), Pieces::whole(lights.len())),
+            Some("power") => (Self::by_power(powers), Pieces::whole(lights.len())),
             _ => {
-                Self::by_tree(&lights.iter().zip(powers).map(|(l, p)| l.lamp.reach(materials, *p)).collect::<Vec<_>>())
+                let pieces = Pieces::new(lights);
+                (Self::by_tree(&pieces.reaches(lights, materials, textures, powers)), pieces)
             }
         }
     }

@@ -126,6 +126,17 @@ pub struct AreaSample {
     pub pdf_area: f64,
 }
 
+/// A flat piece of a surface, in part space.
+#[derive(Clone, Copy, Debug)]
+pub struct Facet {
+    /// Around it.
+    pub bounds: Bounds3,
+    /// Unit outward normal; any where it has no area.
+    pub normal: DVec3,
+    /// Area.
+    pub area: f64,
+}
+
 /// Answers shading's questions about one part.
 pub trait Surface: Send + Sync {
     /// The surface at a hit. `ray` is in part space.
@@ -136,6 +147,21 @@ pub trait Surface: Send + Sync {
 
     /// A point, uniform by area, for a light. `u` in the unit square.
     fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample>;
+
+    /// Flat facets, by number as hits name their primitives, that can be sampled one by one; 0 where there are none.
+    fn facet_count(&self) -> u32 {
+        0
+    }
+
+    /// One of them.
+    fn facet(&self, _facet: u32) -> Facet {
+        Facet { bounds: self.bounds(), normal: DVec3::ZERO, area: 0.0 }
+    }
+
+    /// A point of it, uniform by area.
+    fn sample_facet(&self, _facet: u32, _u: (f32, f32)) -> Option<AreaSample> {
+        None
+    }
 
     /// A point as seen from `from`, with its density per solid angle there; `None` where the shape has nothing better
     /// than [`Surface::sample_area`] (or `from` is inside).

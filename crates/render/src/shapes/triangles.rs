@@ -1,7 +1,7 @@
 //! The surface of triangles over shared vertices, in part space.
 
 use super::analytic::flat_error;
-use super::{AreaSample, Part, Surface, SurfacePoint};
+use super::{AreaSample, Facet, Part, Surface, SurfacePoint};
 use crate::lights::Cone;
 use kirkas_accel::Shape;
 use kirkas_geometry::warp::square_to_uniform_triangle;
@@ -128,17 +128,32 @@ impl Surface for TriangleSurface {
         let i = areas.partition_point(|&a| a <= target).min(areas.len() - 1);
         let before = if i == 0 { 0.0 } else { areas[i - 1] };
         let rest = ((target - before) / (areas[i] - before)).clamp(0.0, 1.0);
-        let (b1, b2) = square_to_uniform_triangle((rest as f32, u.1));
+        let s = self.sample_facet(i as u32, (rest as f32, u.1))?;
+        Some(AreaSample { pdf_area: 1.0 / total, ..s })
+    }
+
+    fn facet_count(&self) -> u32 {
+        self.indices.len() as u32
+    }
+
+    fn facet(&self, facet: u32) -> Facet {
+        let corners = self.corners(facet);
+        let bounds = Bounds3::around(corners.iter().map(|c| c.as_vec3()));
+        Facet { bounds, normal: normal(corners), area: area(corners) }
+    }
+
+    fn sample_facet(&self, facet: u32, u: (f32, f32)) -> Option<AreaSample> {
+        let (b1, b2) = square_to_uniform_triangle(u);
         let (b1, b2) = (f64::from(b1), f64::from(b2));
         let weights = [1.0 - b1 - b2, b1, b2];
-        let (corners, uvs) = (self.corners(i as u32), self.uvs(i as u32));
+        let (corners, uvs) = (self.corners(facet), self.uvs(facet));
         let position = mix(corners, weights);
         Some(AreaSample {
             position,
             normal: normal(corners),
             uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
             object_position: self.mesh.object_from_part.transform_point3(position),
-            pdf_area: 1.0 / total,
+            pdf_area: 1.0 / area(corners),
         })
     }
 
