@@ -18,8 +18,11 @@ pub mod pick;
 pub mod pieces;
 mod point;
 mod spot;
+mod table;
 pub mod tree;
+mod tree_and_far;
 mod tree_build;
+mod tree_node;
 pub mod units;
 
 pub use area::{AreaLight, area_growth};

@@ -7,7 +7,9 @@
 
 use super::LightEntry;
 use super::pieces::Pieces;
-use super::tree::{LightBounds, LightTree, more_digits};
+use super::table::Table;
+use super::tree::LightBounds;
+use super::tree_and_far::TreeAndFar;
 use crate::materials::Material;
 use crate::textures::Textures;
 use kirkas_geometry::DVec3;
@@ -48,7 +50,7 @@ enum Method {
 }
 
 /// Of every choice by power, the part that is spread evenly: a weak light may be near, and an estimate of power wrong.
-const EVEN_SHARE: f64 = 0.25;
+pub(super) const EVEN_SHARE: f64 = 0.25;
 
 impl LightPicker {
     /// Every light as likely as any other: the plain twin.
@@ -110,158 +112,6 @@ impl LightPicker {
             Method::Power(table) => table.probability(light),
             Method::Tree(tree) => tree.probability(point, normal, light),
         }
-    }
-}
-
-/// A tree of the near lights, beside the far ones.
-#[derive(Clone, Debug)]
-struct TreeAndFar {
-    tree: Option<LightTree>,
-    far: Vec<Far>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Far {
-    light: u32,
-    irradiance: f32,
-    towards: Option<DVec3>,
-}
-
-impl TreeAndFar {
-    fn new(lights: &[Reach]) -> Self {
-        let near = |r: &Reach| match r {
-            Reach::Near(bounds) => Some(*bounds),
-            Reach::Far { .. } => None,
-        };
-        let far = |(i, r): (usize, &Reach)| match *r {
-            Reach::Far { irradiance, towards } if irradiance > 0.0 => {
-                Some(Far { light: i as u32, irradiance: (irradiance as f32).clamp(f32::MIN_POSITIVE, 1e30), towards })
-            }
-            _ => None,
-        };
-        let tree = LightTree::new(&lights.iter().map(near).collect::<Vec<_>>());
-        TreeAndFar { tree, far: lights.iter().enumerate().filter_map(far).collect() }
-    }
-
-    fn pick(&self, point: DVec3, normal: DVec3, u: f32) -> Option<(u32, f32)> {
-        let u = more_digits(u, point);
-        if let (Some(tree), []) = (&self.tree, self.far.as_slice()) {
-            return Some(tree.pick(point, normal, u));
-        }
-        let shares = self.shares(point, normal);
-        if !shares.any() {
-            return None;
-        }
-        let mut rest = u;
-        let mut last = None;
-        for far in &self.far {
-            let p = shares.of(far.arriving(normal));
-            if p > 0.0 && rest < f64::from(p) {
-                return Some((far.light, p));
-            }
-            rest -= f64::from(p);
-            last = if p > 0.0 { Some((far.light, p)) } else { last };
-        }
-        match &self.tree {
-            Some(tree) if shares.near > 0.0 => {
-                let p = shares.of(shares.near);
-                let (light, within) = tree.pick(point, normal, (rest.max(0.0) / f64::from(p)).min(1.0 - f64::EPSILON));
-                Some((light, p * within))
-            }
-            // Rounding left a crumb.
-            _ => last,
-        }
-    }
-
-    fn probability(&self, point: DVec3, normal: DVec3, light: u32) -> f32 {
-        match &self.tree {
-            Some(tree) if self.far.is_empty() => tree.probability(point, normal, light),
-            Some(tree) if tree.holds(light) => {
-                let shares = self.shares(point, normal);
-                shares.of(shares.near) * tree.probability(point, normal, light)
-            }
-            _ => match self.far.iter().find(|f| f.light == light) {
-                Some(far) => self.shares(point, normal).of(far.arriving(normal)),
-                None => 0.0,
-            },
-        }
-    }
-
-    fn shares(&self, point: DVec3, normal: DVec3) -> Shares {
-        // From power to irradiance, for a light between all-round and flat.
-        const PER_POWER: f32 = 0.16;
-        let near = self.tree.as_ref().map_or(0.0, |tree| tree.importance(point, normal) * PER_POWER);
-        let mut shares = Shares { near, total: near, count: u32::from(near > 0.0) };
-        for far in &self.far {
-            let arriving = far.arriving(normal);
-            shares.total += arriving;
-            shares.count += u32::from(arriving > 0.0);
-        }
-        shares
-    }
-}
-
-impl Far {
-    /// About how much of it arrives at a surface of this normal; 0 only if nothing can.
-    fn arriving(&self, normal: DVec3) -> f32 {
-        match self.towards {
-            Some(towards) if normal != DVec3::ZERO => {
-                let cosine = towards.dot(normal) as f32;
-                if cosine > 0.0 { self.irradiance * cosine.max(1e-3) } else { 0.0 }
-            }
-            _ => self.irradiance,
-        }
-    }
-}
-
-/// What arrives, to be shared out: partly in proportion, partly evenly.
-struct Shares {
-    near: f32,
-    total: f32,
-    count: u32,
-}
-
-impl Shares {
-    fn any(&self) -> bool {
-        self.count > 0
-    }
-
-    /// The probability of what sends `arriving`.
-    fn of(&self, arriving: f32) -> f32 {
-        if arriving == 0.0 {
-            return 0.0;
-        }
-        const EVEN: f32 = EVEN_SHARE as f32;
-        EVEN / self.count as f32 + (1.0 - EVEN) * (arriving / self.total)
-    }
-}
-
-/// Shares of 1, summed up: found by halving, and neighbours in `u` stay neighbours.
-#[derive(Clone, Debug)]
-struct Table {
-    /// Shares of the first, of the first two, ...; the last is 1.
-    sums: Vec<f32>,
-}
-
-impl Table {
-    fn new(shares: impl Iterator<Item = f64>) -> Self {
-        let mut sum = 0.0;
-        let mut sums: Vec<f32> = shares.map(|s| (sum += s, sum as f32).1).collect();
-        if let Some(last) = sums.last_mut() {
-            *last = 1.0;
-        }
-        Table { sums }
-    }
-
-    fn pick(&self, u: f32) -> (u32, f32) {
-        let light = self.sums.partition_point(|&s| s <= u).min(self.sums.len() - 1) as u32;
-        (light, self.probability(light))
-    }
-
-    /// As the rounded sums have it, so that it is exactly what `pick` does.
-    fn probability(&self, light: u32) -> f32 {
-        let before = |n: usize| n.checked_sub(1).map_or(0.0, |n| self.sums[n]);
-        self.sums.get(light as usize).map_or(0.0, |s| s - before(light as usize))
     }
 }
 

@@ -4,7 +4,8 @@
 //! Size is the square of a box's diagonal instead of its surface, since the walk bounds by spheres: so that lights in a row
 //! or in a plane are told apart as well.
 
-use super::tree::{LightBounds, Link, MOST_FORKS, Node};
+use super::tree::MOST_FORKS;
+use super::tree_node::{LightBounds, Link, Node};
 use core::f64::consts::PI;
 use kirkas_geometry::elementary::{cos, sin};
 
