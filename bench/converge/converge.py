@@ -10,6 +10,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from math import exp, log
 from pathlib import Path
 
@@ -26,6 +27,8 @@ MITSUBA = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler"
 PEERS = {
     "llvm_ad_rgb": ("peer_mitsuba.py", None, MITSUBA, None),
     "scalar_rgb": ("peer_mitsuba.py", None, MITSUBA, None),
+    "cycles": ("peer_cycles.py", "KIRKAS_CYCLES_PYTHON", ("TABULATED_SOBOL", "BLUE_NOISE"), ["cornell"]),
+    "luxcore": ("peer_luxcore.py", "KIRKAS_LUXCORE_PYTHON", ("SOBOL", "RANDOM", "METROPOLIS"), ["cornell"]),
 }
 
 
@@ -61,10 +64,13 @@ class Bench:
         program, variable, _, _ = PEERS[who]
         python = os.environ[variable] if variable else sys.executable
         command = [python, HERE / program, who, self.folder, self.name, self.args.size, sampler, spp, ",".join(map(str, seeds)), self.folder / stem]
+        begin = time.perf_counter()
         done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+        wall = time.perf_counter() - begin
         if done.returncode:
             sys.exit(f"{who}: {program} failed\n{done.stdout[-2000:]}{done.stderr[-4000:]}")
         told = json.loads(done.stdout.splitlines()[-1])
+        told["start"] = wall - told["first"] - sum(told["render"])
         told["render"] = float(np.median(told["render"]))
         return {"who": who, "stem": stem, "sampler": sampler} | told
 
@@ -104,8 +110,9 @@ class Bench:
         """A peer's error after so long, and Kirkas on both sides of it."""
         seeds = range(1, 1 + self.args.seeds)
         sampler, rate = self.best_sampler(who)
-        spp = max(1, int(rate * self.args.busy * 1.05))
-        run = self.peer(who, sampler, spp, seeds, f"{self.name}.{who}")
+        spp = int(rate * self.args.busy * 1.1) + 1
+        while (run := self.peer(who, sampler, spp, seeds, f"{self.name}.{who}"))["render"] < self.args.busy:
+            spp = int(1.1 * run["spp"] * self.args.busy / run["render"]) + 1
         self.runs["peers"].append(run)
         error = errors.error(self.folder, run["stem"], self.truth)
         if not self.points:

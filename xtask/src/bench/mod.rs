@@ -25,7 +25,7 @@ fn kernel(args: &[String]) -> Outcome {
 }
 
 /// The time to an error, in Python; takes the options of `bench/converge/converge.py --help`. `KIRKAS_PYTHON` names a Python that has
-/// Mitsuba and NumPy.
+/// Mitsuba and NumPy; `KIRKAS_CYCLES_PYTHON` one with `bpy`, `KIRKAS_LUXCORE_PYTHON` one with `pyluxcore`, without which those peers are left out.
 fn converge(args: &[String]) -> Outcome {
     let python = std::env::var("KIRKAS_PYTHON").unwrap_or_else(|_| "python3".into());
     if !exists(&python, "--version") {
