@@ -129,6 +129,14 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
     }
     let chosen = singles.params(Kind::Integrator).spec().name;
     let integrator = INTEGRATORS.iter().find(|i| i.spec.name == chosen).expect("the description was validated");
+    if film.bins.is_some() && !integrator.knows_bins {
+        let message = format!("`{chosen}` keeps no spectral bins: its particles have wavelengths of their own");
+        return Err(vec![
+            Diagnostic::error("no-bins", message)
+                .at(p.span("spectral_bins"), "bins of wavelength")
+                .help("choose `[integrator] type = \"photon\"`, or leave the bins out"),
+        ]);
+    }
     if !scene.ambient.is_empty() && !integrator.knows_ambient {
         warnings.push(
             Diagnostic::warning(
@@ -145,9 +153,11 @@ pub fn prepare(description: &Description, assets: &dyn Assets, options: &Options
                 .help("choose `[integrator] type = \"path\"`"),
         );
     }
+    let integrator = (integrator.build)(&singles.params(Kind::Integrator));
+    warnings.extend(integrator.warnings(&scene));
     let groups = if p.bool("light_groups") { scene.groups.clone() } else { Vec::new() };
     Ok(Prepared {
-        integrator: (integrator.build)(&singles.params(Kind::Integrator)),
+        integrator,
         filter: filter.ok_or_else(|| vec![bad_filter(&p)])?,
         shift: p.vector2("shift"),
         sampler: SamplerKind::new(&s),

@@ -130,9 +130,16 @@ impl<'a, O: Observer> Flock<'a, O> {
         let film_weights = start.path.lanes.film_weights();
         let planes = self.renderer.planes;
         let lanes = self.renderer.bins.map(|b| LaneSums::new(&b, &start.path.lanes));
+        let landed = self.renderer.integrator.landed(id.x, id.y);
+        if let Some(landed) = landed {
+            landed.sums.iter().enumerate().for_each(|(group, &sum)| self.observer.landed(id, group as u32, sum));
+        }
         let new = |mut sums: Vec<[i128; 3]>| {
             sums.clear();
-            sums.resize(planes, [0; 3]);
+            match landed {
+                Some(landed) => sums.extend(landed.sums),
+                None => sums.resize(planes, [0; 3]),
+            }
             Slot {
                 id,
                 pixel,
@@ -142,7 +149,7 @@ impl<'a, O: Observer> Flock<'a, O> {
                 pending: 1,
                 sums,
                 lanes,
-                is_invalid: false,
+                is_invalid: landed.is_some_and(|l| l.is_invalid),
                 aov: None,
             }
         };
@@ -313,7 +320,7 @@ fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64,
 }
 
 /// The share of a colour that has no channel beyond `most`; 0 = all of it.
-fn within(rgb: [f32; 3], most: f32) -> f32 {
+pub(crate) fn within(rgb: [f32; 3], most: f32) -> f32 {
     let greatest = rgb[0].abs().max(rgb[1].abs()).max(rgb[2].abs());
     if most > 0.0 && greatest > most { most / greatest } else { 1.0 }
 }

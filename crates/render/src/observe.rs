@@ -40,6 +40,8 @@ pub trait Observer {
     fn shadow(&mut self, _id: SampleId, _ray: &ShadowRay, _blocked: bool) {}
     /// Film colour (fully weighted, as the integer that is added, unit 2^-64) reached a pixel.
     fn contribution(&mut self, _id: SampleId, _branch: u64, _group: u32, _light: Light, _fixed: [i128; 3]) {}
+    /// Particles of the pass have put film colour (as the integer that is added, unit 2^-64) on the pixel.
+    fn landed(&mut self, _id: SampleId, _group: u32, _fixed: [i128; 3]) {}
     /// A path ended.
     fn end(&mut self, _id: SampleId, _branch: u64, _why: PathEnd) {}
 }

@@ -86,7 +86,7 @@ impl Renderer<'_> {
             if done >= samples.end {
                 break;
             }
-            let prepared = self.integrator.prepare_pass(self.scene, self.seed, self.resolution, done);
+            let prepared = self.integrator.prepare_pass(self, done);
             let longest = if prepared.is_some() { 1 } else { LONGEST_PASS };
             let renderer = self.with_pass(prepared.as_ref());
             statistics = prepared.as_ref().map_or(statistics, |p| statistics.plus(&p.counted));
@@ -160,7 +160,7 @@ impl Renderer<'_> {
         };
         let mut film = Film::new(layout);
         for sample in samples.clone() {
-            let prepared = self.integrator.prepare_pass(self.scene, self.seed, self.resolution, sample);
+            let prepared = self.integrator.prepare_pass(self, sample);
             let tile = &mut film.tiles[0];
             self.with_pass(prepared.as_ref()).render_tile(tile, samples.start, sample + 1, observer);
         }
@@ -186,7 +186,7 @@ impl Renderer<'_> {
                 f64::from(id.y) + 0.5 + f64::from(place.offset.1) + self.shift[1],
             ),
             lens: if uses_lens { sampler.pair(LENS) } else { (0.5, 0.5) },
-            time: if uses_time { open + (close - open) * f64::from(moment()) } else { open },
+            time: if uses_time { camera.time_at(moment()) } else { open },
         };
         let mut ray = camera.ray(&sample, self.resolution);
         ray.mask = PRIMARY;

@@ -123,8 +123,10 @@ pub struct SurfaceHit {
     pub error: DVec3,
     /// Unit geometric normal, outward.
     pub normal: DVec3,
-    /// Frame of the shading normal, on the side of `normal`.
+    /// Frame of the shading normal, on the side of `normal`, as fits who looks.
     pub frame: Frame,
+    /// The shading normal whoever looks, on the side of `normal`.
+    pub shading_normal: DVec3,
     /// True when the ray came from the side that `normal` points to.
     pub is_front: bool,
     /// Where textures look.
@@ -146,10 +148,21 @@ impl SurfaceHit {
         Ray { origin, direction: direction.as_vec3(), t_min: 0.0, t_max: f32::INFINITY, mask: SECONDARY, ..*like }
     }
 
+    /// The shading frame as it is for one who looks from `direction` (away from the surface).
+    pub fn frame_towards(&self, direction: DVec3) -> Frame {
+        let z = shading_normal_towards(direction, self.normal, self.shading_normal).as_vec3().normalize();
+        if z == self.frame.z { self.frame } else { Frame::from_z_and_tangent(z, self.frame.x) }
+    }
+
     /// The ray that asks whether a light's sample reaches this point.
     pub fn shadow_ray(&self, s: &LightSample, like: &Ray) -> Ray {
         ray_to_light(offset_origin(self.position, self.error, self.normal, s.direction), s, like)
     }
+}
+
+/// A shading normal that turns away from the viewer while the surface does not says nothing useful: then it is the true one.
+fn shading_normal_towards(viewer: DVec3, normal: DVec3, shading: DVec3) -> DVec3 {
+    if (viewer.dot(shading) > 0.0) == (viewer.dot(normal) > 0.0) { shading } else { normal }
 }
 
 /// The ray from `origin` that asks whether a light's sample reaches it, at the time of `like`.
@@ -247,16 +260,14 @@ impl Scene {
         if shading.dot(point.normal) < 0.0 {
             shading = -shading;
         }
-        // A shading normal that turns away from the viewer while the surface does not says nothing useful.
-        if (ray.direction.as_dvec3().dot(shading) < 0.0) != is_front {
-            shading = point.normal;
-        }
+        let seen = shading_normal_towards(-ray.direction.as_dvec3(), point.normal, shading);
         SurfaceHit {
             t: hit.t,
             position: point.position,
             error: point.error,
             normal: point.normal,
-            frame: Frame::from_z_and_tangent(shading.as_vec3().normalize(), point.tangent.as_vec3()),
+            frame: Frame::from_z_and_tangent(seen.as_vec3().normalize(), point.tangent.as_vec3()),
+            shading_normal: shading,
             is_front,
             texture: TexturePoint {
                 uv: point.uv,
@@ -268,6 +279,20 @@ impl Scene {
             emission_group: part.emission_group,
             hit: *hit,
         }
+    }
+
+    /// Camera rays see what was hit.
+    pub fn is_visible(&self, hit: &Hit) -> bool {
+        let geometry = hit.geometry as usize;
+        let all = self.accel.scene_geometry();
+        let mask = match hit.instance.outermost() {
+            NO_INSTANCE => all.world[geometry].mask,
+            i => {
+                all.instances[i as usize].mask
+                    & all.aggregates[self.instances[i as usize].aggregate].geometries[geometry].mask
+            }
+        };
+        mask & PRIMARY != 0
     }
 
     /// The material of a hit.

@@ -63,11 +63,30 @@ pub struct Camera {
     exposure: f64,
 }
 
+/// How one point of the lens sees a point of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Where the camera's ray starts.
+    pub origin: DVec3,
+    /// Where on the film the point is seen, in pixels, which may lie outside the image.
+    pub film: (f64, f64),
+    /// What a surface at the point, facing the camera, covers of the film: pixels squared per scene unit squared.
+    pub density: f64,
+}
+
 /// A ray in camera space; the direction need not be unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CameraRay {
     origin: DVec3,
     direction: DVec3,
+}
+
+/// A [`Sight`] in camera space, with film from -1 to 1 along each axis.
+#[derive(Clone, Copy, Debug)]
+struct CameraSight {
+    from: DVec3,
+    place: (f64, f64),
+    density: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -137,6 +156,12 @@ impl Camera {
         self.shutter
     }
 
+    /// The time of a moment of the exposure: 0 = the shutter opens, 1 = it closes.
+    pub fn time_at(&self, moment: f32) -> f64 {
+        let (open, close) = self.shutter;
+        open + (close - open) * f64::from(moment)
+    }
+
     /// True when rays depend on [`CameraSample::lens`].
     pub fn uses_lens(&self) -> bool {
         matches!(&self.projection, Projection::ThinLens(p) if p.uses_lens())
@@ -158,6 +183,27 @@ impl Camera {
             Projection::ThinLens(p) => p.project(local, &film)?,
         };
         Some(((x + 1.0) * 0.5 * film.width, (1.0 - y) * 0.5 * film.height))
+    }
+
+    /// How the point `lens` (unit square) of the lens sees `point`: the adjoint of [`Camera::ray`]. `None` for what it does not see
+    /// from there, wherever the image ends.
+    pub fn see(&self, point: DVec3, lens: (f32, f32), time: f64, resolution: (u32, u32)) -> Option<Sight> {
+        let world_from_camera = self.world_from_camera(time);
+        let local = world_from_camera.inverse().transform_point3(point);
+        let film = FilmPlace::new((0.0, 0.0), resolution);
+        let seen = match &self.projection {
+            Projection::Perspective(p) => p.see(local, DVec3::ZERO, &film),
+            Projection::Orthographic(p) => p.see(local, &film),
+            Projection::ThinLens(p) => p.see(local, &film, lens),
+        }?;
+        // From areas and distances of camera space to those of the world.
+        let origin = world_from_camera.transform_point3(seen.from);
+        let stretch = (point - origin).length() / (local - seen.from).length();
+        let shrinking = 1.0 / world_from_camera.matrix3.determinant().abs();
+        let (x, y) = seen.place;
+        let density = seen.density * 0.25 * film.width * film.height * shrinking * stretch;
+        let place = ((x + 1.0) * 0.5 * film.width, (1.0 - y) * 0.5 * film.height);
+        (density > 0.0 && density.is_finite()).then_some(Sight { origin, film: place, density })
     }
 
     fn world_from_camera(&self, time: f64) -> DAffine3 {

@@ -26,7 +26,7 @@
 //!
 //! Foley, van Dam, Feiner & Hughes 1990, "Computer Graphics: Principles and Practice", section 6.1.2 (parallel projections).
 
-use super::{CameraRay, FilmPlace};
+use super::{CameraRay, CameraSight, FilmPlace};
 use kirkas_geometry::DVec3;
 use kirkas_scene::spec::POSITIVE;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
@@ -54,6 +54,12 @@ impl Orthographic {
     pub(super) fn ray(&self, film: &FilmPlace) -> CameraRay {
         let origin = DVec3::new(film.x * self.half_height * film.aspect(), film.y * self.half_height, 0.0);
         CameraRay { origin, direction: DVec3::NEG_Z }
+    }
+
+    pub(super) fn see(&self, point: DVec3, film: &FilmPlace) -> Option<CameraSight> {
+        let density = 1.0 / (self.half_height * self.half_height * film.aspect());
+        let from = DVec3::new(point.x, point.y, 0.0);
+        (point.z < 0.0).then(|| CameraSight { from, place: self.project(point, film), density })
     }
 
     pub(super) fn project(&self, point: DVec3, film: &FilmPlace) -> (f64, f64) {

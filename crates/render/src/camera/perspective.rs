@@ -27,7 +27,7 @@
 //!
 //! Foley, van Dam, Feiner & Hughes 1990, "Computer Graphics: Principles and Practice", section 6.1.1 (perspective).
 
-use super::{CameraRay, FilmPlace};
+use super::{CameraRay, CameraSight, FilmPlace};
 use kirkas_geometry::DVec3;
 use kirkas_geometry::elementary::tan;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
@@ -82,6 +82,19 @@ impl Perspective {
     pub(super) fn project(&self, point: DVec3, film: &FilmPlace) -> Option<(f64, f64)> {
         let (half_x, half_y) = self.half_sides(film);
         (point.z < 0.0).then(|| (point.x / -point.z / half_x, point.y / -point.z / half_y))
+    }
+
+    /// `point` as a pinhole at `from`, a point of the plane z = 0, sees it.
+    pub(super) fn see(&self, point: DVec3, from: DVec3, film: &FilmPlace) -> Option<CameraSight> {
+        let (half_x, half_y) = self.half_sides(film);
+        let depth = -point.z;
+        let way = point - from;
+        // The picture in the plane at depth 1 has 1 / cos^3 times the angle's size, and the surface cos / r^2 of its own.
+        (depth > 0.0).then(|| CameraSight {
+            from,
+            place: (way.x / depth / half_x, way.y / depth / half_y),
+            density: way.length() / (depth * depth * depth * half_x * half_y),
+        })
     }
 
     fn half_sides(&self, film: &FilmPlace) -> (f64, f64) {

@@ -36,7 +36,7 @@
 //! R. Cook, T. Porter, L. Carpenter: "Distributed Ray Tracing", 1984, <https://doi.org/10.1145/964965.808590>.
 
 use super::perspective::{FOV, FOV_AXIS};
-use super::{CameraRay, FilmPlace, Perspective};
+use super::{CameraRay, CameraSight, FilmPlace, Perspective};
 use kirkas_geometry::DVec3;
 use kirkas_geometry::warp::{square_to_uniform_disk, square_to_uniform_polygon};
 use kirkas_scene::spec::{NOT_NEGATIVE, POSITIVE};
@@ -98,13 +98,27 @@ impl ThinLens {
         if !self.uses_lens() {
             return central;
         }
-        let unit = match self.blades {
-            0 => square_to_uniform_disk(lens),
-            sides => square_to_uniform_polygon(lens, sides, self.blade_rotation),
-        };
-        let origin = unit.as_dvec2().extend(0.0) * self.aperture_radius;
+        let origin = self.lens_point(lens);
         // Divided by the distance, so that huge distances keep their meaning: direction.z stays -1.
         CameraRay { origin, direction: central.direction - origin / self.focus_distance }
+    }
+
+    /// Where `u` is on the lens.
+    fn lens_point(&self, u: (f32, f32)) -> DVec3 {
+        let unit = match self.blades {
+            0 => square_to_uniform_disk(u),
+            sides => square_to_uniform_polygon(u, sides, self.blade_rotation),
+        };
+        unit.as_dvec2().extend(0.0) * self.aperture_radius
+    }
+
+    pub(super) fn see(&self, point: DVec3, film: &FilmPlace, lens: (f32, f32)) -> Option<CameraSight> {
+        let from = if self.uses_lens() { self.lens_point(lens) } else { DVec3::ZERO };
+        let straight = self.pinhole.see(point, from, film)?;
+        // The central ray of the same place meets this one in the plane of focus.
+        let shift = self.pinhole.see(from / self.focus_distance - DVec3::Z, DVec3::ZERO, film)?;
+        let (a, b) = (straight.place, shift.place);
+        Some(CameraSight { place: (a.0 + b.0, a.1 + b.1), ..straight })
     }
 
     pub(super) fn uses_lens(&self) -> bool {

@@ -98,6 +98,19 @@ impl Filter {
         axis(x) * axis(y)
     }
 
+    /// The pixels along one axis for which light at `place` (in pixels from the film's edge) counts: the first of them, and into
+    /// `weights` the filter's value for each, scaled so that the filter's integral is 1. `point` does as the pixel's own box does.
+    pub fn footprint(&self, place: f64, weights: &mut Vec<f64>) -> i64 {
+        let radius = if self.shape == Shape::Point { 0.5 } else { self.radius };
+        let integral = self.table.as_ref().map_or(2.0, |table| table.integral) * radius;
+        let middle = |pixel: i64| pixel as f64 + 0.5;
+        let first = (place - radius - 0.5).ceil() as i64;
+        let last = (place + radius - 0.5).floor() as i64;
+        weights.clear();
+        weights.extend((first..=last).map(|pixel| self.shape.at((place - middle(pixel)) / radius) / integral));
+        first
+    }
+
     /// In units of the radius, and the weight.
     fn sample_axis(&self, u: f32) -> (f64, f64) {
         match &self.table {

@@ -2,44 +2,58 @@
 //! and which rays go on. One driver moves the rays in flocks, so that the kernel always has many in flight.
 
 pub mod crossing;
+mod forward;
+pub mod light;
 mod particle;
 pub mod path;
 pub mod path_simple;
 pub mod photon;
 pub mod whitted;
 
+use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use crate::statistics::Statistics;
 use kirkas_geometry::{DVec3, Ray};
 use kirkas_optics::{Lanes, Light};
-use kirkas_scene::{Params, TypeSpec};
+use kirkas_scene::{Diagnostic, Params, TypeSpec};
 
 /// Every integrator type.
 pub const INTEGRATORS: &[IntegratorType] = &[
+    IntegratorType {
+        spec: &light::SPEC,
+        build: |p| Box::new(light::LightTracing::new(p)),
+        knows_ambient: false,
+        knows_media: true,
+        knows_bins: false,
+    },
     IntegratorType {
         spec: &path::SPEC,
         build: |p| Box::new(path::Path::new(p)),
         knows_ambient: false,
         knows_media: true,
+        knows_bins: true,
     },
     IntegratorType {
         spec: &path_simple::SPEC,
         build: |p| Box::new(path_simple::PathSimple::new(p)),
         knows_ambient: false,
         knows_media: true,
+        knows_bins: true,
     },
     IntegratorType {
         spec: &photon::SPEC,
         build: |p| Box::new(photon::Photon::new(p)),
         knows_ambient: false,
         knows_media: false,
+        knows_bins: true,
     },
     IntegratorType {
         spec: &whitted::SPEC,
         build: |p| Box::new(whitted::Whitted::new(p)),
         knows_ambient: true,
         knows_media: false,
+        knows_bins: true,
     },
 ];
 
@@ -53,6 +67,8 @@ pub struct IntegratorType {
     pub knows_ambient: bool,
     /// It follows light through media that scatter.
     pub knows_media: bool,
+    /// All light of a sample is of the wavelengths of its camera path.
+    pub knows_bins: bool,
 }
 
 /// Closed bodies that a path is inside of.
@@ -219,15 +235,34 @@ pub struct Shared {
     pub lanes: Lanes,
 }
 
+/// What particles of a pass brought to one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landed<'a> {
+    /// Per plane: red, green, blue, unit 2^-64.
+    pub sums: &'a [[i128; 3]],
+    /// Some of it was not finite or absurd.
+    pub is_invalid: bool,
+}
+
 /// One step of an integrator. Pure: the same arguments give the same output.
 pub trait Integrator: Sync {
+    /// What it does not show of a scene.
+    fn warnings(&self, _: &Scene) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
     /// For integrators that look at the whole scene before each pass: the one that takes sample number `pass` of every pixel.
-    fn prepare_pass<'a>(&self, _: &'a Scene, _seed: u64, _resolution: (u32, u32), _pass: u32) -> Option<Pass<'a>> {
+    fn prepare_pass<'a>(&self, _: &Renderer<'a>, _pass: u32) -> Option<Pass<'a>> {
         None
     }
 
     /// What its camera paths have in common, if it is made for one pass.
     fn shared(&self) -> Option<Shared> {
+        None
+    }
+
+    /// What the pass has put on a pixel without its camera paths, if it puts anything.
+    fn landed(&self, _x: u32, _y: u32) -> Option<Landed<'_>> {
         None
     }
 

@@ -60,7 +60,7 @@ pub(super) const ROULETTE_DEPTH: ParamSpec = ParamSpec::integer(
 #[derive(Clone, Debug)]
 pub struct Path {
     max_depth: u32,
-    roulette_depth: u32,
+    pub(super) roulette_depth: u32,
 }
 
 impl Path {

@@ -27,12 +27,13 @@
 //! Illumination using Photon Maps"; Veach 1997, section 5.3 (shading normals).
 
 mod map;
-mod trace;
 
+use super::forward::{Arrival, Place, Receiver, Tracer, usual_count};
 use super::path::{self, MAX_DEPTH, ROULETTE_DEPTH, Vertex};
 use super::{Integrator, Pass, PathState, Shared, StepOutput, crossing};
 use crate::camera::CameraSample;
 use crate::observe::PathEnd;
+use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_accel::Query;
@@ -41,7 +42,6 @@ use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_optics::{Light, LobeSet, Mode};
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
 use map::PhotonMap;
-use trace::Tracer;
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -90,19 +90,19 @@ impl Photon {
 }
 
 impl Integrator for Photon {
-    fn prepare_pass<'a>(&self, scene: &'a Scene, seed: u64, resolution: (u32, u32), pass: u32) -> Option<Pass<'a>> {
+    fn prepare_pass<'a>(&self, renderer: &Renderer<'a>, pass: u32) -> Option<Pass<'a>> {
+        let Renderer { scene, seed, resolution, .. } = *renderer;
         let (moment, wavelength) = owen_sobol_2d(pass, combine(seed, SHARED));
         let shared = Shared { moment, lanes: scene.lanes(|| wavelength) };
-        let (open, close) = scene.camera.shutter();
-        let time = open + (close - open) * f64::from(moment);
-        let first = self.radius.unwrap_or_else(|| usual_radius(scene, resolution, time));
+        let first = self.radius.unwrap_or_else(|| usual_radius(scene, resolution, scene.camera.time_at(moment)));
         let radius = self.radius_of(pass, first) as f32;
         let count = self.photons.map_or_else(|| usual_count(resolution), u64::from);
         let from = u64::from(pass) * count;
         let bounces = self.max_depth.saturating_sub(1);
-        let tracer = Tracer::new(scene, seed, shared.lanes, time, bounces);
-        let (photons, counted) = if bounces > 0 { tracer.trace(from..from + count) } else { Default::default() };
-        let map = PhotonMap::new(&photons, radius);
+        let tracer = Tracer::new(scene, seed, Some(shared), bounces);
+        let all = if bounces > 0 { from..from + count } else { 0..0 };
+        let (photons, counted) = tracer.trace(all, 1.0 / count as f32, &Landing);
+        let map = PhotonMap::new(&photons.concat(), radius);
         Some(Pass { integrator: Box::new(Gatherer { settings: self.clone(), shared, map }), counted })
     }
 
@@ -110,16 +110,11 @@ impl Integrator for Photon {
     fn step(&self, _: &Scene, _: &PathState, _: &Sampler, _: Option<&SurfaceHit>, _: &mut StepOutput) {}
 }
 
-/// As many as pixels, but enough for a picture of few.
-fn usual_count((width, height): (u32, u32)) -> u64 {
-    (u64::from(width) * u64::from(height)).clamp(1 << 15, 1 << 21)
-}
-
 /// Four pixels wide at the median of the distances seen, and never more than a tenth of the scene.
 fn usual_radius(scene: &Scene, resolution: (u32, u32), time: f64) -> f64 {
     const RAYS: u32 = 24;
     const PIXELS: f64 = 4.0;
-    let most = 0.1 * scene.bounding_sphere(time).radius;
+    let most = 0.1 * scene.bounding_sphere((time, time)).radius;
     let place = |n: u32, size: u32| (f64::from(n) + 0.5) / f64::from(RAYS) * f64::from(size);
     let ray = |film| scene.camera.ray(&CameraSample { film, lens: (0.5, 0.5), time }, resolution);
     let width = |n: u32| {
@@ -131,6 +126,29 @@ fn usual_radius(scene: &Scene, resolution: (u32, u32), time: f64) -> f64 {
     let mut widths: Vec<f64> = (0..RAYS * RAYS).filter_map(width).collect();
     widths.sort_by(f64::total_cmp);
     widths.get(widths.len() / 2).map_or(most, |w| (PIXELS * w).min(most)).max(1e-9)
+}
+
+/// Keeps what lands on matte surfaces after a bounce: direct light is asked for.
+struct Landing;
+
+impl Receiver for Landing {
+    type Kept = Vec<map::Photon>;
+
+    fn receive(&self, arrival: &Arrival, kept: &mut Self::Kept) {
+        let (path, Place::Surface(hit, bsdf)) = (arrival.path, &arrival.place) else { return };
+        if path.depth > 0 && bsdf.lobes().intersects(LobeSet::DIFFUSE) {
+            let side = if hit.is_front { hit.normal } else { -hit.normal };
+            kept.push(map::Photon {
+                position: hit.position.as_vec3(),
+                wi: -path.ray.direction.normalize(),
+                normal: side.as_vec3(),
+                power: path.throughput,
+                group: arrival.group,
+                bounces: path.depth,
+                is_alone: path.lanes.is_alone(),
+            });
+        }
+    }
 }
 
 /// The integrator of one pass.

@@ -74,15 +74,17 @@ pub(crate) fn scene_radius(world: &[PlacedPart], aggregates: &[Vec<PlacedPart>],
 }
 
 impl Scene {
-    /// Around everything bounded, where it stands at `time`.
-    pub(crate) fn bounding_sphere(&self, time: f64) -> BoundingSphere {
+    /// Around everything bounded, wherever it is from time `open` to time `close`.
+    pub(crate) fn bounding_sphere(&self, (open, close): (f64, f64)) -> BoundingSphere {
         let around = |parts: &[PartInfo]| {
             let bounds = parts.iter().map(|p| p.surface.bounds()).filter(Bounds3::is_finite);
             bounds.fold(Bounds3::EMPTY, |all, b| all.union(b))
         };
         let local: Vec<Bounds3> = self.aggregates.iter().map(|a| around(a)).collect();
-        let placed = self.instances.iter().map(|i| local[i.aggregate].transformed(&i.world_from_part.at(time)));
-        let all = placed.filter(Bounds3::is_finite).fold(around(&self.world), |all, b| all.union(b));
+        let placed = self.instances.iter().map(|i| i.world_from_part.swept_bounds(&local[i.aggregate], open, close));
+        let space = self.space.and_then(|n| self.volumes[n as usize].bounds());
+        let others = placed.chain(space).filter(Bounds3::is_finite);
+        let all = others.fold(around(&self.world), |all, b| all.union(b));
         if all.is_empty() {
             return BoundingSphere { center: DVec3::ZERO, radius: 1.0 };
         }

@@ -36,7 +36,7 @@ use super::Way;
 use super::majorants::{Majorants, Stretch};
 use super::volume_file;
 use super::voxels::Voxels;
-use kirkas_geometry::{DAffine3, DMat3, DVec3};
+use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Vec3};
 use kirkas_scene::transforms::read_transform;
 use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
 
@@ -97,6 +97,11 @@ impl Grid {
     /// Density is nowhere above this.
     pub fn most(&self) -> f32 {
         self.majorants.most()
+    }
+
+    /// Around it, in the world.
+    pub(super) fn bounds(&self) -> Bounds3 {
+        Bounds3 { min: Vec3::ZERO, max: Vec3::ONE }.transformed(&self.cube_from_world.inverse())
     }
 
     /// The stretches of a way through the grid, in world units.

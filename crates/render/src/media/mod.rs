@@ -24,7 +24,7 @@ mod voxels;
 
 use grid::Grid;
 use kirkas_geometry::elementary::{exp, exp_f32};
-use kirkas_geometry::{DVec3, Ray};
+use kirkas_geometry::{Bounds3, DVec3, Ray};
 use kirkas_optics::{Lanes, Light, Palette, PhaseFunction, Spectrum};
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Fallback, Kind, Map, ParamSpec, ParamType};
 use kirkas_scene::{Params, TypeSpec};
@@ -192,6 +192,14 @@ impl Volume {
         match &self.density {
             Density::Even => way.length,
             Density::Grid(grid) => grid.walk(way).last().map_or(0.0, |s| s.to),
+        }
+    }
+
+    /// Around what is not empty of it; `None` if it is the same everywhere.
+    pub(crate) fn bounds(&self) -> Option<Bounds3> {
+        match &self.density {
+            Density::Even => None,
+            Density::Grid(grid) => Some(grid.bounds()),
         }
     }
 

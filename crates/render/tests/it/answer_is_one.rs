@@ -68,9 +68,14 @@ fn check(scene: &Scene, integrator: &str, sampler: &str, camera: &str, accelerat
     if scene.is_matte && MIRRORS_ONLY.contains(&integrator) {
         return;
     }
-    let depth = if integrator == "whitted" { "max_depth = 40\nmin_contribution = 0\n" } else { "" };
+    let settings = match integrator {
+        "whitted" => "max_depth = 40\nmin_contribution = 0\n",
+        "light" => "particles = 2048\n",
+        "photon" => "photons = 4096\n",
+        _ => "",
+    };
     let p = prepared(&format!(
-        "[integrator]\ntype = \"{integrator}\"\n{depth}[sampler]\ntype = \"{sampler}\"\nsamples = 64\n[accelerator]\ntype = \"{accelerator}\"\n\
+        "[integrator]\ntype = \"{integrator}\"\n{settings}[sampler]\ntype = \"{sampler}\"\nsamples = 64\n[accelerator]\ntype = \"{accelerator}\"\n\
          [film]\nwidth = 4\nheight = 4\n[cameras.eye]\ntype = \"{camera}\"\nposition = [0.3, 1.2, 2.2]\nlook_at = [0, 0, 0]\n{}",
         scene.body
     ));

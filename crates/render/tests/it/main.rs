@@ -13,6 +13,7 @@ mod everything;
 mod films;
 mod filters;
 mod hostile;
+mod light;
 mod light_pieces;
 mod light_sampling;
 mod light_selection;
