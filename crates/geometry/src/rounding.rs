@@ -20,18 +20,21 @@ pub fn offset_origin(point: DVec3, error: DVec3, normal: DVec3, direction: DVec3
     let distance = normal.abs().dot(error);
     let offset = if direction.dot(normal) < 0.0 { normal * -distance } else { normal * distance };
     let moved = point + offset;
-    // Round away from the surface, never towards it.
-    let away = |x: f64, o: f64| {
-        let f = x as f32;
-        if o > 0.0 {
-            f.next_up()
-        } else if o < 0.0 {
-            f.next_down()
-        } else {
-            f
-        }
-    };
     Vec3::new(away(moved.x, offset.x), away(moved.y, offset.y), away(moved.z, offset.z))
+}
+
+/// `x` rounded to f32 and one further towards the side that `offset` goes to: away from the surface, never towards it. Without
+/// branches, which no one could predict.
+#[inline]
+fn away(x: f64, offset: f64) -> f32 {
+    let f = x as f32;
+    // Away from zero the next number has the next bits, for either sign; from zero it is the least of its sign.
+    let bits = f.to_bits();
+    let is_outward = (offset < 0.0) == f.is_sign_negative();
+    let step = if is_outward { 1 } else { u32::MAX };
+    let least = if offset < 0.0 { 0x8000_0001 } else { 1 };
+    let next = if f == 0.0 { least } else { bits.wrapping_add(step) };
+    f32::from_bits(if offset == 0.0 || !f.is_finite() { bits } else { next })
 }
 
 #[cfg(test)]
@@ -47,5 +50,17 @@ mod tests {
         let below = offset_origin(p, e, n, -n).as_dvec3();
         assert!((above - p).dot(n) >= n.abs().dot(e) * 0.999);
         assert!((below - p).dot(n) <= -n.abs().dot(e) * 0.999);
+    }
+
+    #[test]
+    fn away_is_the_next_number_on_that_side() {
+        for x in [0.0, -0.0, 1.0, -1.0, 0.1, -0.1, 1e-45, -1e-45, 1e30, -1e30, 65_536.0] {
+            let f = x as f32;
+            assert_eq!(away(x, 1.0), f.next_up(), "{x}");
+            assert_eq!(away(x, -1.0), f.next_down(), "{x}");
+            assert_eq!(away(x, 0.0).to_bits(), f.to_bits());
+        }
+        assert_eq!(away(f64::INFINITY, -1.0), f32::INFINITY);
+        assert!(away(f64::NAN, 1.0).is_nan());
     }
 }

@@ -32,12 +32,6 @@ struct Slot {
     aov: Option<AovSample>,
 }
 
-/// A path and the sample it belongs to.
-struct Traveller {
-    path: PathState,
-    slot: usize,
-}
-
 /// The working state of one thread.
 pub(crate) struct Flock<'a, O: Observer> {
     renderer: &'a Renderer<'a>,
@@ -45,14 +39,17 @@ pub(crate) struct Flock<'a, O: Observer> {
     size: usize,
     slots: Vec<Slot>,
     free: Vec<usize>,
-    /// Paths that wait, the youngest on top: memory stays bounded by depth and branching.
-    waiting: Vec<Traveller>,
-    active: Vec<Traveller>,
+    /// Paths under way.
+    active: Vec<PathState>,
+    /// The sample of each, by slot.
+    active_slots: Vec<usize>,
     /// From here on, `active` are new camera rays.
     first_from_camera: Option<usize>,
-    shadows: Vec<(ShadowRay, usize)>,
+    /// The samples of the paths that wait in `out`, the youngest on top: memory stays bounded by depth and branching.
+    waiting_slots: Vec<usize>,
+    /// The samples of the shadow rays that wait in `out`.
+    shadow_slots: Vec<usize>,
     rays: Vec<Ray>,
-    keys: Vec<u64>,
     hits: Vec<Option<Hit>>,
     blocked: Vec<bool>,
     out: StepOutput,
@@ -67,12 +64,12 @@ impl<'a, O: Observer> Flock<'a, O> {
             size: size.max(1),
             slots: Vec::new(),
             free: Vec::new(),
-            waiting: Vec::new(),
             active: Vec::new(),
+            active_slots: Vec::new(),
             first_from_camera: None,
-            shadows: Vec::new(),
+            waiting_slots: Vec::new(),
+            shadow_slots: Vec::new(),
             rays: Vec::new(),
-            keys: Vec::new(),
             hits: Vec::new(),
             blocked: Vec::new(),
             out: StepOutput::default(),
@@ -85,17 +82,12 @@ impl<'a, O: Observer> Flock<'a, O> {
         let mut samples = samples;
         loop {
             // Gather a flock: branches first, then new camera rays.
-            self.active.clear();
+            self.take_waiting();
             self.first_from_camera = None;
             while self.active.len() < self.size {
-                if let Some(t) = self.waiting.pop() {
-                    self.active.push(t);
-                } else if let Some((pixel, id)) = samples.next() {
-                    self.first_from_camera.get_or_insert(self.active.len());
-                    self.launch(pixel, id);
-                } else {
-                    break;
-                }
+                let Some((pixel, id)) = samples.next() else { break };
+                self.first_from_camera.get_or_insert(self.active.len());
+                self.launch(pixel, id);
             }
             if self.active.is_empty() {
                 return self.statistics.plus(&self.out.counted);
@@ -106,9 +98,9 @@ impl<'a, O: Observer> Flock<'a, O> {
 
             // Step each path.
             let (active, hits) = (std::mem::take(&mut self.active), std::mem::take(&mut self.hits));
-            for (t, hit) in active.iter().zip(&hits) {
-                self.step(t, *hit);
-                if self.shadows.len() >= MOST_SHADOWS {
+            for (i, (path, hit)) in active.iter().zip(&hits).enumerate() {
+                self.step(path, self.active_slots[i], *hit);
+                if self.shadow_slots.len() >= MOST_SHADOWS {
                     self.trace_shadows();
                 }
             }
@@ -119,8 +111,23 @@ impl<'a, O: Observer> Flock<'a, O> {
 
             // Put finished samples on the film.
             for i in 0..self.active.len() {
-                self.finish(self.active[i].slot, tile);
+                self.finish(self.active_slots[i], tile);
             }
+        }
+    }
+
+    /// Let the youngest paths that wait go on.
+    fn take_waiting(&mut self) {
+        self.active.clear();
+        self.active_slots.clear();
+        let waiting = &mut self.out.paths;
+        if waiting.len() <= self.size {
+            std::mem::swap(&mut self.active, waiting);
+            std::mem::swap(&mut self.active_slots, &mut self.waiting_slots);
+        } else {
+            let first = waiting.len() - self.size;
+            self.active.extend(waiting.drain(first..));
+            self.active_slots.extend(self.waiting_slots.drain(first..));
         }
     }
 
@@ -167,18 +174,16 @@ impl<'a, O: Observer> Flock<'a, O> {
         self.statistics.samples += 1;
         self.statistics.lens_samples += u64::from(start.uses_lens);
         self.statistics.time_samples += u64::from(start.uses_time);
-        self.active.push(Traveller { path: start.path, slot: index });
+        self.active.push(start.path);
+        self.active_slots.push(index);
     }
 
     fn trace_active(&mut self) {
         self.rays.clear();
-        self.keys.clear();
-        for t in &self.active {
-            let slot = &self.slots[t.slot];
-            self.observer.ray(slot.id, &t.path);
-            self.rays.push(t.path.ray);
-            self.keys.push(combine(slot.sampler.key(), t.path.branch));
-            match t.path.kind {
+        for (path, &slot) in self.active.iter().zip(&self.active_slots) {
+            self.observer.ray(self.slots[slot].id, path);
+            self.rays.push(path.ray);
+            match path.kind {
                 RayKind::Camera => self.statistics.camera_rays += 1,
                 RayKind::Reflected => self.statistics.reflected_rays += 1,
                 RayKind::Refracted => self.statistics.refracted_rays += 1,
@@ -186,89 +191,92 @@ impl<'a, O: Observer> Flock<'a, O> {
                 RayKind::Diffuse => self.statistics.diffuse_rays += 1,
             }
         }
-        self.find_hits(self.first_from_camera.unwrap_or(self.active.len()));
+        let (scene, search) = (self.renderer.scene, &mut self.statistics.search);
+        let (slots, active, active_slots) = (&self.slots, &self.active, &self.active_slots);
+        let key = |i: usize| combine(slots[active_slots[i]].sampler.key(), active[i].branch);
+        // Camera rays run close together.
+        let first_coherent = self.first_from_camera.unwrap_or(active.len());
+        let (strewn, together) = self.rays.split_at(first_coherent);
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        let (strewn_hits, together_hits) = self.hits.split_at_mut(first_coherent);
+        let filter = AlphaFilter { scene, key };
+        scene.accel.closest_hits(strewn, Query::filtered(&filter), strewn_hits, search);
+        let filter = AlphaFilter { scene, key: |i| key(first_coherent + i) };
+        scene.accel.closest_hits_coherent(together, Query::filtered(&filter), together_hits, search);
         self.statistics.hits += self.hits.iter().flatten().count() as u64;
     }
 
-    /// Find what each ray hits; those from `first_coherent` on run close together.
-    fn find_hits(&mut self, first_coherent: usize) {
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        let (scene, search) = (self.renderer.scene, &mut self.statistics.search);
-        let (strewn, together) = self.rays.split_at(first_coherent);
-        let (strewn_keys, together_keys) = self.keys.split_at(first_coherent);
-        let (strewn_hits, together_hits) = self.hits.split_at_mut(first_coherent);
-        let filter = AlphaFilter { scene, keys: strewn_keys };
-        scene.accel.closest_hits(strewn, Query::filtered(&filter), strewn_hits, search);
-        let filter = AlphaFilter { scene, keys: together_keys };
-        scene.accel.closest_hits_coherent(together, Query::filtered(&filter), together_hits, search);
-    }
-
-    fn step(&mut self, t: &Traveller, hit: Option<Hit>) {
+    fn step(&mut self, path: &PathState, slot_index: usize, hit: Option<Hit>) {
         let scene = self.renderer.scene;
-        let surface: Option<SurfaceHit> = hit.map(|h| scene.surface(&t.path.ray, &h));
-        let slot = &mut self.slots[t.slot];
+        let surface: Option<SurfaceHit> = hit.map(|h| scene.surface(&path.ray, &h));
+        let slot = &mut self.slots[slot_index];
         if let Some(s) = &surface {
-            self.observer.hit(slot.id, &t.path, s);
+            self.observer.hit(slot.id, path, s);
         }
-        let is_seen = |s: &SurfaceHit| !crossing::is_covered(scene, &t.path, s);
-        let looks = self.renderer.keeps_aovs && t.path.kind == RayKind::Camera && slot.aov.is_none();
+        let is_seen = |s: &SurfaceHit| !crossing::is_covered(scene, path, s);
+        let looks = self.renderer.keeps_aovs && path.kind == RayKind::Camera && slot.aov.is_none();
         if looks && surface.as_ref().is_none_or(is_seen) {
-            slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(&t.path, s)));
+            slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(path, s)));
         }
-        self.out.clear();
-        self.renderer.integrator.step(scene, &t.path, &slot.sampler, surface.as_ref(), &mut self.out);
-        for (light, group) in &self.out.contributions {
-            add(self.renderer, slot, self.observer, t.path.branch, *light, *group);
+        self.renderer.integrator.step(scene, path, &slot.sampler, surface.as_ref(), &mut self.out);
+        for (light, group) in self.out.contributions.drain(..) {
+            add(self.renderer, slot, self.observer, path.branch, light, group);
         }
-        let slot = &mut self.slots[t.slot];
-        slot.pending += (self.out.paths.len() + self.out.shadow_rays.len()) as u32;
+        if let Some(why) = self.out.end.take() {
+            self.observer.end(slot.id, path.branch, why);
+        }
+        let (paths, shadow_rays) = (self.out.paths.len(), self.out.shadow_rays.len());
+        slot.pending += (paths - self.waiting_slots.len() + shadow_rays - self.shadow_slots.len()) as u32;
         slot.pending -= 1;
-        if let Some(why) = self.out.end {
-            self.observer.end(slot.id, t.path.branch, why);
-        }
-        self.shadows.extend(self.out.shadow_rays.drain(..).map(|s| (s, t.slot)));
-        self.waiting.extend(self.out.paths.drain(..).map(|path| Traveller { path, slot: t.slot }));
+        self.waiting_slots.resize(paths, slot_index);
+        self.shadow_slots.resize(shadow_rays, slot_index);
     }
 
     fn trace_shadows(&mut self) {
         let scene = self.renderer.scene;
-        let mut shadows = std::mem::take(&mut self.shadows);
+        let mut shadows = std::mem::take(&mut self.out.shadow_rays);
+        let mut slots = std::mem::take(&mut self.shadow_slots);
         while !shadows.is_empty() {
             self.rays.clear();
-            self.keys.clear();
-            for (s, slot) in &shadows {
-                self.rays.push(s.ray);
-                self.keys.push(AlphaFilter::shadow_key(&self.slots[*slot].sampler, s.branch));
-            }
+            self.rays.extend(shadows.iter().map(|s| s.ray));
             self.statistics.shadow_rays += shadows.len() as u64;
+            let (samples, search) = (&self.slots, &mut self.statistics.search);
+            let key = |i: usize| AlphaFilter::shadow_key(&samples[slots[i]].sampler, shadows[i].branch);
+            let filter = AlphaFilter { scene, key };
 
             // Plain ones want a yes or no; filtered ones walk from surface to surface.
-            if shadows.iter().any(|(s, _)| s.blocked_by != Blocker::Anything) {
-                self.find_hits(self.rays.len());
-                let mut next = Vec::new();
-                for (i, (s, slot)) in shadows.drain(..).enumerate() {
+            if shadows.iter().any(|s| s.blocked_by != Blocker::Anything) {
+                self.hits.clear();
+                self.hits.resize(self.rays.len(), None);
+                scene.accel.closest_hits(&self.rays, Query::filtered(&filter), &mut self.hits, search);
+                let keys: Vec<u64> = (0..shadows.len()).map(key).collect();
+                let (mut on, mut on_slots) = (Vec::new(), Vec::new());
+                for (i, s) in shadows.iter().enumerate() {
                     match self.hits[i] {
-                        None => self.answer(&ShadowRay { light: scene.arrived(&s, self.keys[i]), ..s }, slot, false),
-                        Some(hit) => match scene.weakened(&s, &hit, self.keys[i]) {
-                            Some(on) => next.push((on, slot)),
-                            None => self.answer(&s, slot, true),
+                        None => self.answer(&ShadowRay { light: scene.arrived(s, keys[i]), ..*s }, slots[i], false),
+                        Some(hit) => match scene.weakened(s, &hit, keys[i]) {
+                            Some(weaker) => {
+                                on.push(weaker);
+                                on_slots.push(slots[i]);
+                            }
+                            None => self.answer(s, slots[i], true),
                         },
                     }
                 }
-                shadows = next;
+                (shadows, slots) = (on, on_slots);
             } else {
                 self.blocked.clear();
                 self.blocked.resize(self.rays.len(), false);
-                let filter = AlphaFilter { scene, keys: &self.keys };
-                let search = &mut self.statistics.search;
                 scene.accel.any_hits(&self.rays, Query::filtered(&filter), &mut self.blocked, search);
-                for (i, (s, slot)) in shadows.drain(..).enumerate() {
-                    self.answer(&s, slot, self.blocked[i]);
+                for (i, s) in shadows.iter().enumerate() {
+                    self.answer(s, slots[i], self.blocked[i]);
                 }
+                shadows.clear();
+                slots.clear();
             }
         }
-        self.shadows = shadows;
+        (self.out.shadow_rays, self.shadow_slots) = (shadows, slots);
     }
 
     fn answer(&mut self, s: &ShadowRay, slot: usize, blocked: bool) {

@@ -345,11 +345,6 @@ impl Scene {
         }
     }
 
-    /// The density per solid angle with which [`Scene::sample_light`] of the background's light gives `direction` (unit).
-    pub fn background_pdf(&self, direction: DVec3) -> f32 {
-        self.background.pdf(direction)
-    }
-
     /// For emission given as power: 1 / (pi area) of the shining part, as placed.
     fn area_scale(&self, hit: &SurfaceHit) -> f64 {
         match self.light_of(hit).map(|n| &self.lights[n as usize].lamp) {
@@ -420,6 +415,11 @@ impl Scene {
             Some(body) => transmittance(body.absorption.at(lanes), distance as f32),
             None => Light::splat(1.0),
         }
+    }
+
+    /// True when nothing fills the space at a path's end.
+    pub fn is_empty(&self, media: &MediumStack) -> bool {
+        media.materials().is_empty() && self.space.is_none()
     }
 
     /// Leave out all media, for integrators that would see them only in part.
@@ -506,14 +506,14 @@ impl Scene {
 }
 
 /// Decides the coin of partial opacity: hash(sample, branch, primitive) < alpha.
-pub struct AlphaFilter<'a> {
+pub struct AlphaFilter<'a, K> {
     /// Where surfaces are looked up.
     pub scene: &'a Scene,
-    /// Per ray: the hash of its sample and branch.
-    pub keys: &'a [u64],
+    /// Per ray, by its place in the batch: the hash of its sample and branch.
+    pub key: K,
 }
 
-impl AlphaFilter<'_> {
+impl AlphaFilter<'_, ()> {
     /// The key of a shadow ray: not its path's, since what let that one pass must not let this one pass as well.
     pub fn shadow_key(sampler: &Sampler, branch: u64) -> u64 {
         combine(combine(sampler.key(), branch), SHADOW)
@@ -522,11 +522,11 @@ impl AlphaFilter<'_> {
 
 const SHADOW: u64 = of_name("shadow");
 
-impl HitFilter for AlphaFilter<'_> {
+impl<K: Fn(usize) -> u64 + Sync> HitFilter for AlphaFilter<'_, K> {
     fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {
         let alpha = self.scene.alpha(ray, hit);
         let place = u64::from(hit.instance.outermost()) << 32 | u64::from(hit.geometry);
-        let coin = combine(combine(self.keys[ray_index], place), u64::from(hit.primitive));
+        let coin = combine(combine((self.key)(ray_index), place), u64::from(hit.primitive));
         unit_f32((coin >> 32) as u32) < alpha
     }
 }

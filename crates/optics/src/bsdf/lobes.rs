@@ -89,6 +89,11 @@ impl LobeSet {
         self.0 == 0
     }
 
+    /// True when there is no more than one.
+    pub const fn is_single(self) -> bool {
+        self.0 & self.0.wrapping_sub(1) == 0
+    }
+
     /// `self` if `condition`, else none.
     pub const fn when(self, condition: bool) -> Self {
         if condition { self } else { Self::NONE }

@@ -33,7 +33,7 @@
 //!
 //! Pharr, Jakob & Humphreys 2023, "Physically Based Rendering", section 12.5; the density here is bilinear as the lookup is.
 
-use super::map_distribution::MapDistribution;
+use super::map_distribution::{MapDistribution, MapPoint};
 use crate::textures::{Picture, read_picture};
 use core::f64::consts::PI;
 use kirkas_geometry::elementary::{atan2, cos, sin};
@@ -91,17 +91,22 @@ impl ImageBackground {
 
     /// Linear Rec.709 radiance from a direction.
     pub fn radiance(&self, direction: DVec3) -> [f32; 3] {
-        self.map.color(direction).map(|c| c * self.intensity)
+        self.shining(self.map.color(direction))
     }
 
-    /// A direction from which light comes, with its density per solid angle.
-    pub fn sample(&self, u: (f32, f32)) -> Option<(DVec3, f64)> {
-        self.map.sample(u)
+    /// A direction from which light comes, its radiance, and its density per solid angle.
+    pub fn sample(&self, u: (f32, f32)) -> Option<(DVec3, [f32; 3], f64)> {
+        self.map.sample(u).map(|(direction, color, pdf)| (direction, self.shining(color), pdf))
     }
 
-    /// The density of [`ImageBackground::sample`], per solid angle.
-    pub fn pdf(&self, direction: DVec3) -> f64 {
-        self.map.pdf(direction)
+    /// The radiance from a direction, and the density per solid angle with which [`ImageBackground::sample`] gives it.
+    pub fn seen(&self, direction: DVec3) -> ([f32; 3], f64) {
+        let (color, pdf) = self.map.seen(direction);
+        (self.shining(color), pdf)
+    }
+
+    fn shining(&self, color: [f32; 3]) -> [f32; 3] {
+        color.map(|c| c * self.intensity)
     }
 }
 
@@ -117,6 +122,13 @@ fn turn(p: &Params) -> Result<DMat3, Diagnostic> {
             .help("use `rotate` steps; `intensity` makes it brighter"));
     }
     Ok(m)
+}
+
+/// A direction on the map: column and row in texels, and the sine of its polar angle.
+struct Place {
+    x: f64,
+    y: f64,
+    sine: f64,
 }
 
 /// A picture of all directions that can be looked up and sampled.
@@ -154,49 +166,51 @@ impl SkyMap {
 
     /// The bilinear interpolation of the texels around a direction (of any length but 0).
     pub fn color(&self, direction: DVec3) -> [f32; 3] {
-        let (x, y, _) = self.place(direction);
-        let (x, y) = (x - 0.5, y - 0.5);
-        let (columns, rows) = (self.picture.width as i64, self.picture.height as i64);
+        self.color_at(&self.place(direction))
+    }
+
+    /// The same, and the density of [`SkyMap::sample`], per solid angle.
+    pub fn seen(&self, direction: DVec3) -> ([f32; 3], f64) {
+        let place = self.place(direction);
+        let Some(distribution) = &self.distribution else { return ([0.0; 3], 0.0) };
+        let pdf = distribution.pdf(place.x, place.y) * self.texels_per_steradian(place.sine);
+        (self.color_at(&place), if pdf.is_finite() { pdf } else { 0.0 })
+    }
+
+    /// A direction, its colour, and its density per solid angle.
+    pub fn sample(&self, u: (f32, f32)) -> Option<(DVec3, [f32; 3], f64)> {
+        let MapPoint { x, y, pdf } = self.distribution.as_ref()?.sample(u);
+        let theta = PI * y / self.picture.height as f64;
+        let phi = 2.0 * PI * x / self.picture.width as f64;
+        let sine = sin(theta);
+        let direction = DVec3::new(sine * sin(phi), cos(theta), -sine * cos(phi));
+        let pdf = pdf * self.texels_per_steradian(sine);
+        let color = || self.color_at(&Place { x, y, sine });
+        (pdf > 0.0 && pdf.is_finite()).then(|| ((self.world_from_map * direction).normalize(), color(), pdf))
+    }
+
+    fn color_at(&self, place: &Place) -> [f32; 3] {
+        let (x, y) = (place.x - 0.5, place.y - 0.5);
+        let (columns, rows) = (self.picture.width, self.picture.height);
         let (i, j) = (x.floor(), y.floor());
         let (s, t) = ((x - i) as f32, (y - j) as f32);
-        let at = |dx: i64, dy: i64| {
-            let (column, row) = ((i as i64 + dx).rem_euclid(columns), (j as i64 + dy).clamp(0, rows - 1));
-            self.picture.texels[(row * columns + column) as usize]
-        };
-        let corners = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-        std::array::from_fn(|c| {
-            let [a, b, d, e] = corners.map(|k| k[c]);
-            (a * (1.0 - s) + b * s) * (1.0 - t) + (d * (1.0 - s) + e * s) * t
-        })
+        // Columns go round, rows end at the poles. A place lies half a texel beyond them at most.
+        let left = if i < 0.0 { columns - 1 } else { (i as usize).min(columns - 1) };
+        let right = if left + 1 == columns { 0 } else { left + 1 };
+        let top = j.max(0.0) as usize;
+        let bottom = ((j + 1.0) as usize).min(rows - 1);
+        let at = |row: usize, column: usize| self.picture.texels[row.min(rows - 1) * columns + column];
+        let (a, b, d, e) = (at(top, left), at(top, right), at(bottom, left), at(bottom, right));
+        std::array::from_fn(|c| (a[c] * (1.0 - s) + b[c] * s) * (1.0 - t) + (d[c] * (1.0 - s) + e[c] * s) * t)
     }
 
-    /// A direction, with its density per solid angle.
-    pub fn sample(&self, u: (f32, f32)) -> Option<(DVec3, f64)> {
-        let p = self.distribution.as_ref()?.sample(u);
-        let theta = PI * p.y / self.picture.height as f64;
-        let phi = 2.0 * PI * p.x / self.picture.width as f64;
-        let r = sin(theta);
-        let direction = DVec3::new(r * sin(phi), cos(theta), -r * cos(phi));
-        let pdf = p.pdf * self.texels_per_steradian(r);
-        (pdf > 0.0 && pdf.is_finite()).then(|| ((self.world_from_map * direction).normalize(), pdf))
-    }
-
-    /// The density of [`SkyMap::sample`], per solid angle.
-    pub fn pdf(&self, direction: DVec3) -> f64 {
-        let Some(distribution) = &self.distribution else { return 0.0 };
-        let (x, y, sine) = self.place(direction);
-        let pdf = distribution.pdf(x, y) * self.texels_per_steradian(sine);
-        if pdf.is_finite() { pdf } else { 0.0 }
-    }
-
-    /// Column and row in texels, and the sine of the polar angle.
-    fn place(&self, direction: DVec3) -> (f64, f64, f64) {
+    fn place(&self, direction: DVec3) -> Place {
         let d = self.world_from_map.transpose() * direction;
         let r = (d.x * d.x + d.z * d.z).sqrt();
         let turns = atan2(d.x, -d.z) / (2.0 * PI);
         let turns = if turns < 0.0 { turns + 1.0 } else { turns };
         let theta = atan2(r, d.y);
-        (turns * self.picture.width as f64, theta / PI * self.picture.height as f64, r / d.length())
+        Place { x: turns * self.picture.width as f64, y: theta / PI * self.picture.height as f64, sine: r / d.length() }
     }
 
     /// How many square texels cover a unit of solid angle, where the polar angle has this sine.
@@ -230,7 +244,7 @@ mod tests {
         let map = SkyMap::new(picture(), turned());
         let sample = |_, u| map.sample(u).map(|s| s.0.as_vec3());
         let test = ChiSquare { rows: 32, columns: 64, ..ChiSquare::default() };
-        let result = test.run(sample, |w: Vec3| map.pdf(w.as_dvec3()) as f32);
+        let result = test.run(sample, |w: Vec3| map.seen(w.as_dvec3()).1 as f32);
         assert!((result.total - 1.0).abs() < 1e-3 && result.p_value > 0.001, "{result:?}");
     }
 
@@ -240,9 +254,11 @@ mod tests {
         let mut random = Random::new(8);
         let mut estimates = Vec::new();
         for _ in 0..20_000 {
-            let Some((direction, pdf)) = map.sample(random.pair()) else { continue };
-            assert!((map.pdf(direction) / pdf - 1.0).abs() < 1e-6);
-            estimates.push(f64::from(map.color(direction).iter().sum::<f32>()) / pdf);
+            let Some((direction, color, pdf)) = map.sample(random.pair()) else { continue };
+            let (seen, density) = map.seen(direction);
+            assert!((density / pdf - 1.0).abs() < 1e-6);
+            assert!((0..3).all(|c| (color[c] - seen[c]).abs() <= 1e-4 * (1.0 + color[c])), "{color:?} {seen:?}");
+            estimates.push(f64::from(color.iter().sum::<f32>()) / pdf);
         }
         let mean = estimates.iter().sum::<f64>() / estimates.len() as f64;
         let greatest = estimates.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -258,7 +274,7 @@ mod tests {
             let d = kirkas_geometry::warp::square_to_uniform_sphere(random.pair()).as_dvec3();
             let (a, b) = (straight.color(d), bent.color(turned() * d));
             assert!((0..3).all(|c| (a[c] - b[c]).abs() <= 1e-3 * a[c].max(1.0)));
-            let (p, q) = (straight.pdf(d), bent.pdf(turned() * d));
+            let (p, q) = (straight.seen(d).1, bent.seen(turned() * d).1);
             assert!((p - q).abs() <= 1e-6 * p.max(1e-3), "{p} {q}");
         }
     }

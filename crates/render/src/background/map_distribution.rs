@@ -16,6 +16,9 @@ pub struct MapDistribution {
     cell_sums: Vec<f32>,
     /// Cumulated probabilities of the rows of cells, ending with 1.
     row_sums: Vec<f32>,
+    /// Where to look in each row of `cell_sums`, and in `row_sums`.
+    cell_guides: Vec<u32>,
+    row_guide: Vec<u32>,
 }
 
 /// A point of a map, in texels from the top left corner, with its density per square texel.
@@ -33,7 +36,8 @@ impl MapDistribution {
     /// For `weights` at the texel centres, row by row from the top; `None` if none is above 0 or their sum overflows.
     pub fn new(columns: usize, weights: Vec<f32>) -> Option<Self> {
         let rows = weights.len() / columns.max(1);
-        let mut d = MapDistribution { columns, rows, weights, cell_sums: Vec::new(), row_sums: Vec::new() };
+        let (cell_sums, row_sums, cell_guides, row_guide) = Default::default();
+        let mut d = MapDistribution { columns, rows, weights, cell_sums, row_sums, cell_guides, row_guide };
         let mut row_weights = Vec::with_capacity(rows + 1);
         d.cell_sums.reserve((rows + 1) * columns);
         let mut cells = vec![0.0; columns];
@@ -47,14 +51,18 @@ impl MapDistribution {
         }
         let total: f64 = row_weights.iter().sum();
         d.row_sums = cumulated(&row_weights).collect();
+        d.cell_guides = d.cell_sums.chunks(columns.max(1)).flat_map(guide).collect();
+        d.row_guide = guide(&d.row_sums).collect();
         (total > 0.0 && total.is_finite()).then_some(d)
     }
 
     /// A point, from two numbers in `[0, 1)`.
     pub fn sample(&self, u: (f32, f32)) -> MapPoint {
-        let (row, row_probability, v) = choose(&self.row_sums, f64::from(u.1));
+        let (row, row_probability, v) = choose(&self.row_sums, &self.row_guide, f64::from(u.1));
         let cells = &self.cell_sums[row * self.columns..][..self.columns];
-        let (column, cell_probability, u) = choose(cells, f64::from(u.0));
+        let entries = self.cell_guides.len() / (self.rows + 1);
+        let guide = &self.cell_guides[row * entries..][..entries];
+        let (column, cell_probability, u) = choose(cells, guide, f64::from(u.0));
         let [[a, b], [c, d]] = self.corners(row, column);
         let t = sample_linear(a + b, c + d, v);
         let (left, right) = (a + (c - a) * t, b + (d - b) * t);
@@ -123,12 +131,24 @@ fn probability(sums: &[f32], i: usize) -> f64 {
     f64::from(sums[i]) - if i == 0 { 0.0 } else { f64::from(sums[i - 1]) }
 }
 
-/// The entry that `u` falls into, its probability, and where in it, in `[0, 1]`.
-fn choose(sums: &[f32], u: f64) -> (usize, f64, f64) {
-    let i = sums.partition_point(|s| f64::from(*s) <= u).min(sums.len() - 1);
+/// The entry that `u` falls into, its probability, and where in it, in `[0, 1]`. The guide (Chen & Asau 1974) leaves a few entries to
+/// look through, wherever most of the probability lies.
+fn choose(sums: &[f32], guide: &[u32], u: f64) -> (usize, f64, f64) {
+    let k = ((u * (guide.len() - 1) as f64) as usize).min(guide.len() - 2);
+    let (first, end) = (guide[k] as usize, guide[k + 1] as usize);
+    let i = (first + sums[first..end].partition_point(|s| f64::from(*s) <= u)).min(sums.len() - 1);
     let before = if i == 0 { 0.0 } else { f64::from(sums[i - 1]) };
     let p = f64::from(sums[i]) - before;
     (i, p, if p > 0.0 { ((u - before) / p).clamp(0.0, 1.0) } else { 0.5 })
+}
+
+/// For each of n equal stretches of `[0, 1)`, n a power of two so that their ends are exact, the first entry that reaches beyond its
+/// start; and the number of all.
+fn guide(sums: &[f32]) -> impl Iterator<Item = u32> {
+    let stretches = (sums.len().next_power_of_two() / 4).max(1);
+    let start = move |k: usize| k as f64 / stretches as f64;
+    let first = move |k: usize| sums.partition_point(|s| f64::from(*s) <= start(k)) as u32;
+    (0..stretches).map(first).chain([sums.len() as u32])
 }
 
 /// A number in `[0, 1]` with density linear from `a` to `b` (up to scale), by inversion in the form that does not cancel.
@@ -197,6 +217,22 @@ mod tests {
             }
         }
         assert!(chi_square_tail(statistic, degrees - 1) > 0.001, "{statistic} of {degrees}");
+    }
+
+    #[test]
+    fn the_guide_leads_to_the_entry_that_a_whole_search_finds() {
+        let mut random = Random::new(3);
+        for length in [1, 2, 3, 7, 64, 100] {
+            let weights: Vec<f64> =
+                (0..length).map(|i| if i % 3 == 1 { 0.0 } else { f64::from(random.number()) }).collect();
+            let sums: Vec<f32> = cumulated(&weights).collect();
+            let guide: Vec<u32> = guide(&sums).collect();
+            let ends = sums.iter().map(|s| f64::from(*s)).filter(|s| *s < 1.0);
+            for u in ends.chain((0..1000).map(|_| f64::from(random.number()))).chain([0.0]) {
+                let simple = sums.partition_point(|s| f64::from(*s) <= u).min(length - 1);
+                assert_eq!(choose(&sums, &guide, u).0, simple, "{u} of {length}");
+            }
+        }
     }
 
     #[test]

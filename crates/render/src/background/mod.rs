@@ -82,23 +82,26 @@ impl Background {
 
     /// A direction from which light comes. `u` in the unit square.
     pub fn sample(&self, lanes: &Lanes, u: (f32, f32)) -> Option<LightSample> {
-        let (direction, pdf) = match self {
-            Background::Gradient(b) => b.sample(u),
-            Background::Image(b) => b.sample(u),
-            Background::SunSky(b) => b.sample(u),
+        let (direction, radiance, pdf) = match self {
+            Background::Image(b) => b.sample(u).map(|(d, color, pdf)| (d, lanes.illuminant(color), pdf)),
+            Background::Gradient(b) => b.sample(u).map(|(d, pdf)| (d, self.radiance_exactly(lanes, d), pdf)),
+            Background::SunSky(b) => b.sample(u).map(|(d, pdf)| (d, self.radiance_exactly(lanes, d), pdf)),
         }?;
-        let light = self.radiance_exactly(lanes, direction) * (1.0 / pdf) as f32;
+        let light = radiance * (1.0 / pdf) as f32;
         light.is_finite().then_some(LightSample { direction, target: None, light, pdf: pdf as f32 })
     }
 
-    /// Density per solid angle with which [`Background::sample`] gives `direction` (unit).
-    pub fn pdf(&self, direction: DVec3) -> f32 {
-        let pdf = match self {
-            Background::Gradient(b) => b.pdf(direction),
-            Background::Image(b) => b.pdf(direction),
-            Background::SunSky(b) => b.pdf(direction),
+    /// Radiance from `direction` (unit), and the density per solid angle with which [`Background::sample`] gives it.
+    pub fn seen(&self, lanes: &Lanes, direction: DVec3) -> (Light, f32) {
+        let (radiance, pdf) = match self {
+            Background::Image(b) => {
+                let (color, pdf) = b.seen(direction);
+                (lanes.illuminant(color), pdf)
+            }
+            Background::Gradient(b) => (self.radiance_exactly(lanes, direction), b.pdf(direction)),
+            Background::SunSky(b) => (self.radiance_exactly(lanes, direction), b.pdf(direction)),
         };
-        pdf as f32
+        (radiance, pdf as f32)
     }
 
     /// `direction` is a unit vector: a sun is narrow.

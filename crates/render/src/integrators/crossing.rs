@@ -43,6 +43,8 @@ pub fn ask(
     let lamp = scene.pieces.light(lamp);
     let (blocked_by, light) = if scene.has_hulls {
         (Blocker::AllButHulls, light)
+    } else if scene.is_empty(&media) {
+        (Blocker::Anything, light)
     } else {
         let key = AlphaFilter::shadow_key(sampler, path.branch);
         let way = Way::of_ray(&ray, ray.t_max.min(if ray.t_max.is_finite() { 1.0 } else { f32::INFINITY }));

@@ -144,9 +144,9 @@ impl<'a> Tracer<'a> {
 
     fn find_hits(&self, flying: &[Flying], counted: &mut Statistics) -> Vec<Option<Hit>> {
         let rays: Vec<Ray> = flying.iter().map(|f| f.path.ray).collect();
-        let keys: Vec<u64> = flying.iter().map(|f| combine(f.sampler.key(), f.path.branch)).collect();
         let mut hits = vec![None; rays.len()];
-        let filter = AlphaFilter { scene: self.scene, keys: &keys };
+        let key = |i: usize| combine(flying[i].sampler.key(), flying[i].path.branch);
+        let filter = AlphaFilter { scene: self.scene, key };
         self.scene.accel.closest_hits(&rays, Query::filtered(&filter), &mut hits, &mut counted.search);
         counted.photon_rays += rays.len() as u64;
         counted.hits += hits.iter().flatten().count() as u64;

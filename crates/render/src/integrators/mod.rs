@@ -193,29 +193,19 @@ pub struct ShadowRay {
     pub passed: u32,
 }
 
-/// Where a step puts what it found.
+/// Where steps put what they found, each behind what others have put there.
 #[derive(Default)]
 pub struct StepOutput {
     /// Light that reaches the pixel for certain: `(light, group)`.
     pub contributions: Vec<(Light, u32)>,
     /// Light that reaches it unless something is in the way.
     pub shadow_rays: Vec<ShadowRay>,
-    /// The path's continuations.
+    /// Continuations of paths.
     pub paths: Vec<PathState>,
     /// Set when the path goes no further.
     pub end: Option<crate::observe::PathEnd>,
     /// Rays that steps traced by themselves, all together.
     pub counted: Statistics,
-}
-
-impl StepOutput {
-    /// Forget everything but the counts.
-    pub fn clear(&mut self) {
-        self.contributions.clear();
-        self.shadow_rays.clear();
-        self.paths.clear();
-        self.end = None;
-    }
 }
 
 /// An integrator for one pass: one sample index of all pixels.

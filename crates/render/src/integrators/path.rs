@@ -72,7 +72,61 @@ impl Path {
 
 impl Integrator for Path {
     fn step(&self, scene: &Scene, path: &PathState, sampler: &Sampler, hit: Option<&SurfaceHit>, out: &mut StepOutput) {
-        // Fly through the medium, and scatter in it or come out.
+        // Fly through what fills the space, and scatter in it or come out.
+        let weakened;
+        let path = match scene.is_empty(&path.media) {
+            true => path,
+            false => match self.fly(scene, path, sampler, hit, out) {
+                Some(left) => {
+                    weakened = left;
+                    &weakened
+                }
+                None => return,
+            },
+        };
+
+        // What left the scene sees the background.
+        let Some(hit) = hit else {
+            escape(scene, path, out);
+            return;
+        };
+
+        // Pass boundaries that another body covers.
+        if crossing::is_covered(scene, path, hit) {
+            out.paths.extend(crossing::passed(path, hit));
+            return;
+        }
+
+        // A surface that shines is seen.
+        see_emission(scene, path, hit, out);
+        if path.depth >= self.max_depth {
+            out.end = Some(PathEnd::Depth);
+            return;
+        }
+
+        // Ask a light, and go on.
+        let vertex = Vertex::new(scene, path, hit);
+        if vertex.lobes.is_empty() {
+            out.end = Some(PathEnd::Absorbed);
+            return;
+        }
+        if vertex.lobes.intersects(LobeSet::NON_DELTA) {
+            out.shadow_rays.extend(vertex.ask_light(scene, path, sampler, LobeSet::ALL));
+        }
+        vertex.send_on(scene, path, sampler, LobeSet::ALL, self.roulette_depth, out);
+    }
+}
+
+impl Path {
+    /// The path behind the body or the medium that it is in; `None` if it scattered there.
+    fn fly(
+        &self,
+        scene: &Scene,
+        path: &PathState,
+        sampler: &Sampler,
+        hit: Option<&SurfaceHit>,
+        out: &mut StepOutput,
+    ) -> Option<PathState> {
         let mut path = *path;
         if let Some(volume) = scene.volume_of(&path.media) {
             let way = Way::of_ray(&path.ray, hit.map_or(f32::INFINITY, |h| h.t));
@@ -85,47 +139,17 @@ impl Integrator for Path {
                 FlightEnd::Scattered { distance, weight } => {
                     path.throughput *= weight * scene.clearness(&path.lanes, &path.media, distance);
                     self.scatter(scene, &path, &Particle::new(volume, &path, way.at(distance)), sampler, out);
-                    return;
+                    return None;
                 }
             }
         }
-
-        // What left the scene sees the background.
-        let Some(hit) = hit else {
-            escape(scene, &path, out);
-            return;
-        };
-
-        // Weaken the path by the body it went through.
-        path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
-
-        // Pass boundaries that another body covers.
-        if crossing::is_covered(scene, &path, hit) {
-            out.paths.extend(crossing::passed(&path, hit));
-            return;
+        if let Some(hit) = hit {
+            let distance = f64::from(hit.t * path.ray.direction.length());
+            path.throughput *= scene.clearness(&path.lanes, &path.media, distance);
         }
-
-        // A surface that shines is seen.
-        see_emission(scene, &path, hit, out);
-        if path.depth >= self.max_depth {
-            out.end = Some(PathEnd::Depth);
-            return;
-        }
-
-        // Ask a light, and go on.
-        let vertex = Vertex::new(scene, &path, hit);
-        if vertex.lobes.is_empty() {
-            out.end = Some(PathEnd::Absorbed);
-            return;
-        }
-        if vertex.lobes.intersects(LobeSet::NON_DELTA) {
-            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::ALL));
-        }
-        vertex.send_on(scene, &path, sampler, LobeSet::ALL, self.roulette_depth, out);
+        Some(path)
     }
-}
 
-impl Path {
     /// Ask a light from within a medium, and go on.
     fn scatter(&self, scene: &Scene, path: &PathState, particle: &Particle, sampler: &Sampler, out: &mut StepOutput) {
         if path.depth >= self.max_depth || path.throughput.is_black() {
@@ -155,13 +179,15 @@ fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette
 
 /// The path sees the background and ends.
 pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
-    let sky = scene.background.radiance(&path.lanes, path.ray.direction)
-        * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
+    let (sky, weight) = match (&path.last, scene.background_light) {
+        (Some(last), Some(light)) => {
+            let (sky, pdf) = scene.background.seen(&path.lanes, path.ray.direction.as_dvec3().normalize());
+            (sky, last.weight(scene, light, pdf))
+        }
+        _ => (scene.background.radiance(&path.lanes, path.ray.direction), 1.0),
+    };
+    let sky = sky * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
     if !sky.is_black() {
-        let weight = match (&path.last, scene.background_light) {
-            (Some(last), Some(light)) => last.weight(scene, light, scene.background_pdf(path.ray.direction.as_dvec3())),
-            _ => 1.0,
-        };
         out.contributions.push((path.throughput * sky * weight, scene.background_group));
     }
     out.end = Some(PathEnd::Escaped);
@@ -277,7 +303,8 @@ impl<'a> Vertex<'a> {
         lobes: LobeSet,
     ) -> Option<PathState> {
         let hit = self.hit;
-        let u_lobe = sampler.one(combine(path.branch, LOBE));
+        // One lobe leaves nothing to choose.
+        let u_lobe = if (self.lobes & lobes).is_single() { 0.0 } else { sampler.one(combine(path.branch, LOBE)) };
         let u = sampler.pair(combine(path.branch, DIRECTION));
         let s = self.bsdf.sample(self.wo, u_lobe, u, lobes, Mode::Radiance)?;
         let throughput: Light = path.throughput * s.weight();

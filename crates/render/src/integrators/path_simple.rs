@@ -246,8 +246,7 @@ fn drift(volume: &Volume, path: &mut PathState, way: &Way, sampler: &Sampler, ou
 
 /// What the path's ray hits.
 fn closest(scene: &Scene, path: &PathState, sampler: &Sampler, out: &mut StepOutput) -> Option<SurfaceHit> {
-    let keys = [combine(sampler.key(), path.branch)];
-    let filter = AlphaFilter { scene, keys: &keys };
+    let filter = AlphaFilter { scene, key: |_| combine(sampler.key(), path.branch) };
     out.counted.diffuse_rays += 1;
     let hit = scene.accel.closest_hit(&path.ray, Query::filtered(&filter), 0, &mut out.counted.search)?;
     Some(scene.surface(&path.ray, &hit))
@@ -256,16 +255,16 @@ fn closest(scene: &Scene, path: &PathState, sampler: &Sampler, out: &mut StepOut
 /// Add the light that a shadow ray asks for, unless something is in its way.
 fn arrive(scene: &Scene, asked: Option<ShadowRay>, sampler: &Sampler, out: &mut StepOutput) {
     let Some(mut shadow) = asked else { return };
-    let keys = [AlphaFilter::shadow_key(sampler, shadow.branch)];
-    let filter = AlphaFilter { scene, keys: &keys };
+    let key = AlphaFilter::shadow_key(sampler, shadow.branch);
+    let filter = AlphaFilter { scene, key: |_| key };
     loop {
         out.counted.shadow_rays += 1;
         match scene.accel.closest_hit(&shadow.ray, Query::filtered(&filter), 0, &mut out.counted.search) {
             None => {
-                out.contributions.push((scene.arrived(&shadow, keys[0]), shadow.group));
+                out.contributions.push((scene.arrived(&shadow, key), shadow.group));
                 return;
             }
-            Some(hit) => match scene.weakened(&shadow, &hit, keys[0]) {
+            Some(hit) => match scene.weakened(&shadow, &hit, key) {
                 Some(behind) => shadow = behind,
                 None => return,
             },

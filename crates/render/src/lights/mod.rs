@@ -2,11 +2,10 @@
 //!
 //! Contract: a sample's `light` is what the cosine and the BSDF are multiplied by: for points, spots and directions the
 //! irradiance on a surface facing the light; for areas and backgrounds the radiance over the density per solid angle. That density
-//! is the sample's `pdf`; [`Scene::light_pdf`] and [`Scene::background_pdf`] give the same one for a ray that finds the light by
+//! is the sample's `pdf`; [`Scene::light_pdf`] and [`Background::seen`] give the same one for a ray that finds the light by
 //! itself, so that both ways can be weighted against each other. Neither knows of the choice among lights: that is [`pick`].
 //!
 //! [`Scene::light_pdf`]: crate::Scene::light_pdf
-//! [`Scene::background_pdf`]: crate::Scene::background_pdf
 
 mod ambient;
 mod area;

@@ -51,6 +51,12 @@ impl TriangleSurface {
         self.indices[primitive as usize].map(|i| self.mesh.uvs[i as usize].as_dvec2())
     }
 
+    /// Derivative of position by the first texture coordinate.
+    fn tangent(&self, corners: [DVec3; 3], uvs: [DVec2; 3]) -> DVec3 {
+        // Its own barycentric coordinates grow along the first edge.
+        if self.mesh.uvs.is_empty() { corners[1] - corners[0] } else { tangent(corners, uvs) }
+    }
+
     fn shading_normal(&self, primitive: u32, weights: [f64; 3], normal: DVec3) -> DVec3 {
         if self.mesh.normals.is_empty() {
             return normal;
@@ -112,7 +118,7 @@ impl Surface for TriangleSurface {
             normal,
             shading_normal: self.shading_normal(primitive, weights, normal),
             uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
-            tangent: tangent(corners, uvs),
+            tangent: self.tangent(corners, uvs),
             object_position: self.mesh.object_from_part.transform_point3(position),
         }
     }

@@ -101,7 +101,7 @@ fn backgrounds_are_sampled_in_proportion_to_what_they_send() {
         let number = p.scene.background_light.unwrap();
         let light = &p.scene.lights[number as usize];
         let sample = |u| p.scene.sample_light(&Lanes::RGB, light, DVec3::ZERO, 0.0, u);
-        let pdf = |d: Vec3| p.scene.background_pdf(d.as_dvec3().normalize());
+        let pdf = |d: Vec3| p.scene.background.seen(&Lanes::RGB, d.as_dvec3().normalize()).1;
         let result = ChiSquare::default().run(|_, u| sample(u).map(|s| s.direction.as_vec3()), pdf);
         assert!(result.p_value > 1e-3, "{words}: {result:?}");
 

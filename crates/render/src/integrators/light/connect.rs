@@ -107,9 +107,9 @@ impl Connector<'_> {
     fn look(&self, kept: &mut Connections, counted: &mut Statistics) {
         let scene = self.renderer.scene;
         let rays: Vec<Ray> = kept.waiting.iter().map(|c| c.path.ray).collect();
-        let keys: Vec<u64> = kept.waiting.iter().map(|c| c.key).collect();
         let mut blocked = vec![false; rays.len()];
-        let filter = AlphaFilter { scene, keys: &keys };
+        let waiting = &kept.waiting;
+        let filter = AlphaFilter { scene, key: |i: usize| waiting[i].key };
         scene.accel.any_hits(&rays, Query::filtered(&filter), &mut blocked, &mut counted.search);
         counted.shadow_rays += rays.len() as u64;
         for (mut c, is_blocked) in kept.waiting.drain(..).zip(blocked) {
@@ -126,9 +126,8 @@ impl Connector<'_> {
         let mut waiting = std::mem::take(&mut kept.waiting);
         while !waiting.is_empty() {
             let rays: Vec<Ray> = waiting.iter().map(|c| c.path.ray).collect();
-            let keys: Vec<u64> = waiting.iter().map(|c| c.key).collect();
             let mut hits = vec![None; rays.len()];
-            let filter = AlphaFilter { scene, keys: &keys };
+            let filter = AlphaFilter { scene, key: |i: usize| waiting[i].key };
             scene.accel.closest_hits(&rays, Query::filtered(&filter), &mut hits, &mut counted.search);
             counted.shadow_rays += rays.len() as u64;
             let mut behind = Vec::new();
