@@ -54,7 +54,7 @@ pub fn cbrt(x: f64) -> f64 {
 /// Sine and cosine of an f32 angle in radians: their Taylor polynomials after a reduction to an eighth of a turn, in f64 (error
 /// below 1e-11), since directions are drawn with them all the time.
 pub fn sin_cos_f32(x: f32) -> (f32, f32) {
-    const MOST: f32 = 1e5;
+    const MOST: f32 = 1e4;
     if !(x.abs() <= MOST) {
         let (s, c) = libm::sincos(f64::from(x));
         return (s as f32, c as f32);

@@ -26,10 +26,16 @@ pub fn wavelength(i: usize) -> f64 {
 /// The value of samples at a wavelength in nm; beyond the ends, that at the end.
 #[inline]
 pub(crate) fn interpolate(samples: &[f32; SAMPLES], nanometres: f32) -> f32 {
+    let (i, share) = place(nanometres);
+    samples[i] + (samples[i + 1] - samples[i]) * share
+}
+
+/// The sample before a wavelength in nm, and how far it lies towards the next, in 0..1.
+#[inline]
+pub(super) fn place(nanometres: f32) -> (usize, f32) {
     let place = ((nanometres - FIRST as f32) * (1.0 / STEP as f32)).max(0.0);
     let i = (place as usize).min(SAMPLES - 2);
-    let share = (place - i as f32).min(1.0);
-    samples[i] + (samples[i + 1] - samples[i]) * share
+    (i, (place - i as f32).min(1.0))
 }
 
 impl Curve {

@@ -3,7 +3,7 @@
 //! Colours are those that the CIE 1931 2-degree observer sees, in linear Rec.709 with the white of daylight D65: light with
 //! the spectrum of D65 and luminance 1 is (1, 1, 1). Integrals are those of the straight lines between samples, exactly.
 
-use super::curve::{FIRST, SAMPLES, STEP, interpolate};
+use super::curve::{FIRST, SAMPLES, STEP, interpolate, place};
 use super::tables;
 use std::sync::LazyLock;
 
@@ -21,8 +21,8 @@ pub enum Draw {
 
 /// Everything derived from the tables.
 pub struct Observer {
-    /// Film red, green, blue per nm of radiance at each sample.
-    film: [[f32; SAMPLES]; 3],
+    /// Film red, green, blue per nm of radiance at each sample, and nothing.
+    film: [[f32; 4]; SAMPLES],
     /// D65 with luminance 1.
     white: [f32; SAMPLES],
     /// Weights of a curve's samples in its red, green and blue.
@@ -64,7 +64,7 @@ impl Observer {
         let reflected = bars.map(|bar| tent_product_weights(&bar, &white));
         let by_sample = |w: &[[f64; SAMPLES]; 3], i: usize| [w[0][i], w[1][i], w[2][i]];
         Observer {
-            film: bars.map(|bar| bar.map(|x| x as f32)),
+            film: core::array::from_fn(|i| [bars[0][i] as f32, bars[1][i] as f32, bars[2][i] as f32, 0.0]),
             white: white.map(|x| x as f32),
             light_weights: core::array::from_fn(|i| by_sample(&light, i)),
             reflected_weights: core::array::from_fn(|i| by_sample(&reflected, i)),
@@ -86,7 +86,10 @@ impl Observer {
     /// Red, green, blue that radiance of 1 per nm at this wavelength adds, per nm.
     #[inline]
     pub fn film(&self, nanometres: f32) -> [f32; 3] {
-        [0, 1, 2].map(|c| interpolate(&self.film[c], nanometres))
+        let (i, share) = place(nanometres);
+        let (a, b) = (&self.film[i], &self.film[i + 1]);
+        let [red, green, blue, _]: [f32; 4] = core::array::from_fn(|c| a[c] + (b[c] - a[c]) * share);
+        [red, green, blue]
     }
 
     /// The colour of light with this spectrum, per nm.

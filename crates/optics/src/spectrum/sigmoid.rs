@@ -6,7 +6,7 @@
 
 use super::curve::{SAMPLES, wavelength};
 use super::observer::{apply, inverse, observer};
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 /// Coefficients of the quadratic in [`variable`], the highest power first.
 pub type Coefficients = [f32; 3];
@@ -108,12 +108,21 @@ fn miss(c: &[f64; 3], target: &[f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
 /// Cells along each axis of the table.
 const EDGE: usize = 32;
 
-/// Coefficients by which channel is greatest, its value, and the other two relative to it.
-struct Table(Vec<[f32; 4]>);
+/// Coefficients by which channel is greatest, its value, and the other two relative to it. A column holds those of all values; it is
+/// made when a colour first needs it, and is the same whoever does.
+struct Table {
+    columns: Vec<OnceLock<Column>>,
+    nodes: [f32; EDGE],
+}
 
-static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
+type Column = Box<[[f32; 4]; EDGE]>;
 
-/// As [`solve`], nearly, from a table that is made when it is first needed.
+static TABLE: LazyLock<Table> = LazyLock::new(|| Table {
+    columns: (0..3 * EDGE * EDGE).map(|_| OnceLock::new()).collect(),
+    nodes: core::array::from_fn(|i| node(i) as f32),
+});
+
+/// As [`solve`], nearly, from a table.
 #[inline]
 pub fn from_table(rgb: [f32; 3]) -> Coefficients {
     TABLE.look_up(rgb)
@@ -125,40 +134,33 @@ fn node(i: usize) -> f64 {
     smooth(smooth(i as f64 / (EDGE - 1) as f64))
 }
 
-impl Table {
-    fn new() -> Self {
-        let mut table = vec![[0.0; 4]; 3 * EDGE * EDGE * EDGE];
-        for greatest in 0..3 {
-            for y in 0..EDGE {
-                for x in 0..EDGE {
-                    let ratios = [x as f64 / (EDGE - 1) as f64, y as f64 / (EDGE - 1) as f64];
-                    // From the middle outwards, each from its neighbour.
-                    let start = EDGE / 5;
-                    let color = |z: usize| {
-                        let mut rgb = [0.0; 3];
-                        rgb[greatest] = node(z);
-                        rgb[(greatest + 1) % 3] = node(z) * ratios[0];
-                        rgb[(greatest + 2) % 3] = node(z) * ratios[1];
-                        rgb.map(|x| within(x as f32))
-                    };
-                    let mut put = |z: usize, c: [f64; 3]| {
-                        let i = ((greatest * EDGE + z) * EDGE + y) * EDGE + x;
-                        table[i] = [c[0] as f32, c[1] as f32, c[2] as f32, 0.0];
-                    };
-                    let first = solve(color(start).map(|x| x as f32)).map(f64::from);
-                    for walk in [(start..EDGE).collect::<Vec<_>>(), (0..start).rev().collect()] {
-                        let mut c = first;
-                        for z in walk {
-                            c = refine(c, color(z), 12);
-                            put(z, c);
-                        }
-                    }
-                }
-            }
+#[cold]
+fn column(greatest: usize, y: usize, x: usize) -> Column {
+    let ratios = [x as f64 / (EDGE - 1) as f64, y as f64 / (EDGE - 1) as f64];
+    let color = |z: usize| {
+        let mut rgb = [0.0; 3];
+        rgb[greatest] = node(z);
+        rgb[(greatest + 1) % 3] = node(z) * ratios[0];
+        rgb[(greatest + 2) % 3] = node(z) * ratios[1];
+        rgb.map(|x| within(x as f32))
+    };
+    // From a dark one outwards, each from its neighbour.
+    let start = EDGE / 5;
+    let first = solve(color(start).map(|x| x as f32)).map(f64::from);
+    let mut column = Box::new([[0.0; 4]; EDGE]);
+    let mut walk = |places: &mut dyn Iterator<Item = usize>| {
+        let mut c = first;
+        for z in places {
+            c = refine(c, color(z), 12);
+            column[z] = [c[0] as f32, c[1] as f32, c[2] as f32, 0.0];
         }
-        Table(table)
-    }
+    };
+    walk(&mut (start..EDGE));
+    walk(&mut (0..start).rev());
+    column
+}
 
+impl Table {
     fn look_up(&self, rgb: [f32; 3]) -> Coefficients {
         let greatest = if rgb[0] > rgb[1] {
             if rgb[0] > rgb[2] { 0 } else { 2 }
@@ -178,20 +180,24 @@ impl Table {
         };
         let (x, dx) = split(rgb[(greatest + 1) % 3] / value * last);
         let (y, dy) = split(rgb[(greatest + 2) % 3] / value * last);
-        let z = NODES.partition_point(|&n| n <= value).clamp(1, EDGE - 1) - 1;
-        let dz = (value - NODES[z]) / (NODES[z + 1] - NODES[z]);
-        let at =
-            |dz: usize, dy: usize, dx: usize| &self.0[((greatest * EDGE + z + dz) * EDGE + y + dy) * EDGE + x + dx];
+        let nodes = &self.nodes;
+        let z = nodes.partition_point(|&n| n <= value).clamp(1, EDGE - 1) - 1;
+        let dz = (value - nodes[z]) / (nodes[z + 1] - nodes[z]);
         let mix =
             |a: &[f32; 4], b: &[f32; 4], t: f32| -> [f32; 4] { core::array::from_fn(|i| a[i] + (b[i] - a[i]) * t) };
-        let row = |z, y| mix(at(z, y, 0), at(z, y, 1), dx);
-        let plane = |z| mix(&row(z, 0), &row(z, 1), dy);
+        let at = |y: usize, x: usize| {
+            let column = self.columns[(greatest * EDGE + y) * EDGE + x].get_or_init(|| column(greatest, y, x));
+            [&column[z], &column[z + 1]]
+        };
+        let corners = [at(y, x), at(y, x + 1), at(y + 1, x), at(y + 1, x + 1)];
+        let plane = |z: usize| {
+            let [a, b, c, d] = corners.map(|c| c[z]);
+            mix(&mix(a, b, dx), &mix(c, d, dx), dy)
+        };
         let [a, b, c, _] = mix(&plane(0), &plane(1), dz);
         [a, b, c]
     }
 }
-
-static NODES: LazyLock<[f32; EDGE]> = LazyLock::new(|| core::array::from_fn(|i| node(i) as f32));
 
 #[cfg(test)]
 mod tests {
