@@ -1,12 +1,12 @@
 //! What is given to people: archives and pages.
 
-use crate::sh::{self, Outcome, build_kirkas, output, program, root};
+use crate::sh::{self, Outcome, build_kirkas, build_shipped, output, program, root};
 use std::fs;
 use std::process::Command;
 
 /// `cargo xtask dist`
 pub fn run(_: &[String]) -> Outcome {
-    let binary = build_kirkas()?;
+    let binary = build_shipped()?;
     let version = output(Command::new(&binary).arg("--version"))?;
     let version = version.split_whitespace().nth(1).unwrap_or("0").to_string();
     let name = format!("kirkas-{version}-{}-{}", std::env::consts::ARCH, std::env::consts::OS);

@@ -49,13 +49,23 @@ pub fn exists(name: &str, probe: &str) -> bool {
     Command::new(name).arg(probe).output().is_ok_and(|o| o.status.success())
 }
 
-/// Build `kirkas` as users do, and say where it lies; `KIRKAS_BIN` names a binary to use instead.
+/// The program, built soon.
 pub fn build_kirkas() -> Result<PathBuf, String> {
+    build("release")
+}
+
+/// The program as it is given to people: faster, and longer to build.
+pub fn build_shipped() -> Result<PathBuf, String> {
+    build("dist")
+}
+
+/// Or the one that `KIRKAS_BIN` names.
+fn build(profile: &str) -> Result<PathBuf, String> {
     if let Some(binary) = std::env::var_os("KIRKAS_BIN") {
         return Ok(root().join(binary));
     }
-    run(cargo().args(["build", "--release", "--package", "kirkas-cli"]))?;
-    Ok(target_dir().join("release").join(format!("kirkas{}", std::env::consts::EXE_SUFFIX)))
+    run(cargo().args(["build", "--profile", profile, "--package", "kirkas-cli"]))?;
+    Ok(target_dir().join(profile).join(format!("kirkas{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// Where cargo puts what it builds.

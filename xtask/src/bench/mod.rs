@@ -6,7 +6,7 @@ mod measured;
 mod mesh;
 mod renders;
 
-use crate::sh::{self, Outcome, build_kirkas, cargo, exists, program};
+use crate::sh::{self, Outcome, build_shipped, cargo, exists, program};
 
 /// `cargo xtask bench [renders|kernel|converge] [--quick] [--runs N] [--json FILE]`
 pub fn run(args: &[String]) -> Outcome {
@@ -34,6 +34,6 @@ fn converge(args: &[String]) -> Outcome {
     if !program(&python).args(["-c", "import mitsuba, numpy"]).output().is_ok_and(|o| o.status.success()) {
         return Err(format!("`{python}` lacks Mitsuba: `{python} -m pip install mitsuba numpy`, or set KIRKAS_PYTHON"));
     }
-    let kirkas = build_kirkas()?;
+    let kirkas = build_shipped()?;
     sh::run(program(&python).arg("bench/converge/converge.py").arg("--kirkas").arg(kirkas).args(args))
 }

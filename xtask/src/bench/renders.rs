@@ -6,7 +6,7 @@
 
 use super::measured::{Measured, Meter, median};
 use super::{flake, mesh};
-use crate::sh::{Outcome, build_kirkas, exists, root};
+use crate::sh::{Outcome, build_shipped, exists, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -54,7 +54,7 @@ impl Case {
 pub fn run(args: &[String]) -> Outcome {
     let quick = args.iter().any(|a| a == "--quick");
     let json = args.iter().position(|a| a == "--json").and_then(|i| args.get(i + 1));
-    let kirkas = build_kirkas()?;
+    let kirkas = build_shipped()?;
     let mitsuba = std::env::var("KIRKAS_MITSUBA").unwrap_or_else(|_| "mitsuba".into());
     let (has_povray, has_mitsuba) = (exists("povray", "--version"), exists(&mitsuba, "--help"));
     let folder = root().join("target/bench");

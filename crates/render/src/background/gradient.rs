@@ -4,7 +4,7 @@
 //! stops, and so is the density.
 
 use core::f64::consts::TAU;
-use kirkas_geometry::elementary::{cos, sin};
+use kirkas_geometry::elementary::sin_cos;
 use kirkas_geometry::{DVec3, Vec3};
 use kirkas_optics::{Lanes, Light, Palette, Spectrum};
 use kirkas_scene::params::read_color;
@@ -109,8 +109,9 @@ impl GradientBackground {
         // Turn around the axis.
         let up = self.up.as_dvec3().normalize();
         let (x, y) = up.any_orthonormal_pair();
-        let (r, phi) = ((1.0 - sine * sine).max(0.0).sqrt(), TAU * f64::from(u.1));
-        let direction = (up * sine + x * (r * cos(phi)) + y * (r * sin(phi))).normalize();
+        let r = (1.0 - sine * sine).max(0.0).sqrt();
+        let (s, c) = sin_cos(TAU * f64::from(u.1));
+        let direction = (up * sine + x * (r * c) + y * (r * s)).normalize();
         let pdf = self.pdf(direction);
         (pdf > 0.0).then_some((direction, pdf))
     }

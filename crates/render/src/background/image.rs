@@ -36,7 +36,7 @@
 use super::map_distribution::{MapDistribution, MapPoint};
 use crate::textures::{Picture, read_picture};
 use core::f64::consts::PI;
-use kirkas_geometry::elementary::{atan2, cos, sin};
+use kirkas_geometry::elementary::{atan2, sin, sin_cos};
 use kirkas_geometry::{DMat3, DVec3};
 use kirkas_scene::spec::NOT_NEGATIVE;
 use kirkas_scene::transforms::read_transform;
@@ -182,8 +182,8 @@ impl SkyMap {
         let MapPoint { x, y, pdf } = self.distribution.as_ref()?.sample(u);
         let theta = PI * y / self.picture.height as f64;
         let phi = 2.0 * PI * x / self.picture.width as f64;
-        let sine = sin(theta);
-        let direction = DVec3::new(sine * sin(phi), cos(theta), -sine * cos(phi));
+        let ((sine, cosine), (s, c)) = (sin_cos(theta), sin_cos(phi));
+        let direction = DVec3::new(sine * s, cosine, -sine * c);
         let pdf = pdf * self.texels_per_steradian(sine);
         let color = || self.color_at(&Place { x, y, sine });
         (pdf > 0.0 && pdf.is_finite()).then(|| ((self.world_from_map * direction).normalize(), color(), pdf))
@@ -223,6 +223,7 @@ impl SkyMap {
 mod tests {
     use super::*;
     use kirkas_geometry::Vec3;
+    use kirkas_geometry::elementary::cos;
     use kirkas_geometry::transform::rotation;
     use kirkas_testkit::{ChiSquare, Random};
 

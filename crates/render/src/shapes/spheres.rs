@@ -5,7 +5,7 @@ use super::sphere::{sphere_tangent, sphere_uv, uniform_direction};
 use super::{AreaSample, Part, ShapeInput, Surface, SurfacePoint};
 use core::f64::consts::{PI, TAU};
 use kirkas_accel::{Shape, Sphere};
-use kirkas_geometry::elementary::{cos, sin};
+use kirkas_geometry::elementary::sin_cos;
 use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Ray};
 use kirkas_scene::Diagnostic;
 use std::sync::{Arc, OnceLock};
@@ -151,8 +151,8 @@ impl Surface for SphereSet {
         let (x, y) = axis.any_orthonormal_pair();
         let h = cone.one_minus_cos * f64::from(u.0);
         let sin2 = (h * (2.0 - h)).max(0.0);
-        let (phi, sine) = (TAU * f64::from(u.1), sin2.sqrt());
-        let w = axis * (1.0 - h) + x * (sine * cos(phi)) + y * (sine * sin(phi));
+        let (sine, (s, c)) = (sin2.sqrt(), sin_cos(TAU * f64::from(u.1)));
+        let w = axis * (1.0 - h) + x * (sine * c) + y * (sine * s);
 
         // Find where it meets the near side; at the rim, where it may miss by rounding, it touches.
         let miss2 = cone.distance * cone.distance * sin2;
