@@ -9,7 +9,7 @@
 //! |---|---|---|---|---|
 //! | `file` | path | | required | `.vol`: Mitsuba's grid volume, version 3, one channel, 32-bit floats or bytes |
 //! | `transform` | transform | | the file's box | places the unit cube, which the grid fills, in the world |
-//! | `majorants` | `local`, `global` | | `local` | one bound of the density for each block of 8 samples, or one for all: slower, same picture |
+//! | `majorants` | `local`, `global` | | `local` | bounds of the density for each block of 4 samples along each axis, or one bound for all: slower, same picture |
 //!
 //! and the coefficients and the phase function of every medium, at density 1.
 //!
@@ -33,7 +33,7 @@
 //! Woodcock et al. 1965; Amanatides & Woo 1987; Novak, Selle & Jarosz 2014 (see `tracking.rs`).
 
 use super::Way;
-use super::majorants::{Majorants, Stretch};
+use super::majorants::{Majorants, Stretch, Walk};
 use super::volume_file;
 use super::voxels::Voxels;
 use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Vec3};
@@ -65,11 +65,11 @@ pub(super) const TRANSFORM: ParamSpec = ParamSpec::new(
 pub(super) const MAJORANTS: ParamSpec = ParamSpec::choice(
     "majorants",
     &["local", "global"],
-    "One bound of the density for each block of 8 samples, or one for all: slower, same picture.",
+    "Bounds of the density for each block of 4 samples along each axis, or one bound for all: slower, same picture.",
 );
 
-/// Samples along the edge of a block that has one bound.
-const BLOCK: usize = 8;
+/// Samples along the edge of a block that has bounds of its own.
+const BLOCK: usize = 4;
 
 /// A grid in the world.
 #[derive(Clone, Debug)]
@@ -104,11 +104,36 @@ impl Grid {
         Bounds3 { min: Vec3::ZERO, max: Vec3::ONE }.transformed(&self.cube_from_world.inverse())
     }
 
-    /// The stretches of a way through the grid, in world units.
-    pub(super) fn walk(&self, way: &Way) -> impl Iterator<Item = Stretch> + '_ {
-        let origin = self.cube_from_world.transform_point3(way.origin);
-        let direction = self.cube_from_world.transform_vector3(way.direction);
-        self.majorants.walk(origin, direction, 0.0, way.length)
+    /// A way as the unit cube sees it; distances stay those of the world.
+    pub(super) fn crossing(&self, way: &Way) -> Crossing<'_> {
+        Crossing {
+            grid: self,
+            origin: self.cube_from_world.transform_point3(way.origin),
+            direction: self.cube_from_world.transform_vector3(way.direction),
+            length: way.length,
+        }
+    }
+}
+
+/// A way through a grid.
+pub(super) struct Crossing<'a> {
+    grid: &'a Grid,
+    origin: DVec3,
+    direction: DVec3,
+    length: f64,
+}
+
+impl Crossing<'_> {
+    /// Its stretches, in order.
+    pub fn walk(&self) -> Walk<'_> {
+        self.grid.majorants.walk(self.origin, self.direction, 0.0, self.length)
+    }
+
+    /// Density at this distance, which lies on the stretch.
+    #[inline]
+    pub fn density(&self, distance: f64, stretch: &Stretch) -> f32 {
+        let density = self.grid.voxels.at(self.origin + self.direction * distance);
+        density.max(stretch.least).min(stretch.most)
     }
 }
 

@@ -191,7 +191,7 @@ impl Volume {
     pub(crate) fn end_of(&self, way: &Way) -> f64 {
         match &self.density {
             Density::Even => way.length,
-            Density::Grid(grid) => grid.walk(way).last().map_or(0.0, |s| s.to),
+            Density::Grid(grid) => grid.crossing(way).walk().last().map_or(0.0, |s| s.to),
         }
     }
 
