@@ -73,6 +73,7 @@ const PICTURES: &[Picture] = &[
     light("sun_sky", &["--size", "480x300", "--spp", "64"]),
     light("many_lights", &["--size", "480x300", "--spp", "64"]),
     light("prism", &["--spp", "128"]),
+    light("prism_screen", &["--size", "480x300", "--spp", "96"]),
     light("glass_caustics", &["--size", "480x315", "--spp", "64"]),
     light("pool", &["--size", "480x315", "--spp", "48"]),
     light("fog", &["--size", "480x300", "--spp", "128"]),

@@ -5,6 +5,7 @@ mod answer_is_one;
 mod backgrounds;
 mod bodies;
 mod cameras;
+mod caustics;
 mod closed_forms;
 mod color_modes;
 mod contributions;

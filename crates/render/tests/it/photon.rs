@@ -1,6 +1,6 @@
 //! `photon` against `path`, against closed forms, and against itself in pieces.
 
-use crate::support::{pixel, pixels, prepared};
+use crate::support::{pixels, prepared};
 use kirkas_geometry::DVec3;
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_optics::Lanes;
@@ -210,29 +210,6 @@ fn any_threads_flock_split_and_stop_give_the_same_bits() {
     let (_, _, tile, i) = one.pixels().find(|p| (p.0, p.1) == (9, 7)).unwrap();
     assert_eq!(alone.sums[0], tile.sums[i]);
     assert_ne!(alone.sums[0], [0; 3]);
-}
-
-/// Parallel light in a mirroring ring: the envelope of the mirrored rays is a nephroid, its cusp half a radius from the middle.
-#[test]
-fn a_mirroring_ring_draws_a_nephroid_with_its_cusp_at_half_the_radius() {
-    let (irradiance, pixels_wide) = (PI, 160);
-    let body = format!(
-        "[integrator]\ntype = \"photon\"\nphotons = 200000\nradius = 0.02\nmax_depth = 2\n\
-         [materials.silver]\ntype = \"mirror\"\nreflectance = 1\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n\
-         [objects.ring]\ntype = \"cylinder\"\nfrom = [0, 0, 0]\nto = [0, 0.05, 0]\ncaps = false\nmaterial = \"silver\"\nvisible = false\n\
-         [objects.floor]\ntype = \"rectangle\"\nedge_u = [0, 0, 3]\nedge_v = [3, 0, 0]\nmaterial = \"white\"\n\
-         [lights.sun]\ntype = \"directional\"\nunit = \"W/m2\"\nintensity = {irradiance}\ndirection = [1, -0.05, 0]\n\
-         [film]\nwidth = {pixels_wide}\nheight = 1\nfilter = \"box\"\n\
-         [cameras.eye]\ntype = \"orthographic\"\nposition = [0, 1, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, -1]\nheight = 0.0125\n"
-    );
-    // Along the axis, from -1 to 1, the light of one reflection ends in a spike at the cusp.
-    let film = expose(&body, 0..8, 64);
-    let row: Vec<f64> = (0..pixels_wide).map(|x| pixel(&film, x, 0)[1]).collect();
-    let place = |x: usize| (x as f64 + 0.5) / f64::from(pixels_wide) * 2.0 - 1.0;
-    let inside = (0..row.len()).filter(|&x| (0.1..0.9).contains(&place(x)));
-    let cusp = place(inside.max_by(|&a, &b| row[a].total_cmp(&row[b])).unwrap());
-    println!("cusp at {cusp}");
-    assert!((cusp - 0.5).abs() < 0.03, "the cusp is at {cusp}: {row:.2?}");
 }
 
 #[test]
