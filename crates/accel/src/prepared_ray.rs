@@ -98,14 +98,16 @@ impl PreparedRay {
 /// The axes in cyclic order, by the last of them.
 const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// `t` moved into `[near, far]`; NaN stays.
+/// `t` moved into `[near, far]`; NaN stays. A zero comes out positive: whether the greater of 0 and -0 is one or the other differs from
+/// compiler to compiler.
 #[inline]
 pub(crate) fn clamp(t: f32, (near, far): (f32, f32)) -> f32 {
-    if t < near {
+    let inside = if t < near {
         near
     } else if t > far {
         far
     } else {
         t
-    }
+    };
+    inside + 0.0
 }
