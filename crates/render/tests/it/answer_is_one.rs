@@ -85,8 +85,10 @@ fn check(scene: &Scene, integrator: &str, sampler: &str, camera: &str, accelerat
     let (film, _) = expose(&p, 0..64);
     let (mean, variance) = noisy(&film);
     for (m, v) in mean.iter().zip(&variance) {
-        // Some thousand values: six standard errors, and what a tree of 40 bounces cuts off.
-        let slack = 6.0 * v.sqrt() + 2e-3;
+        // Some thousand values: six standard errors, and what a tree of 40 bounces cuts off. Particles also find what covers too little
+        // of a pixel for one of its 64 rays to see, and so to count it as not sky.
+        let unseen = if SHARED_PARTICLES.contains(&integrator) { 1.0 / 64.0 } else { 0.0 };
+        let slack = 6.0 * v.sqrt() + 2e-3 + unseen;
         assert!((m - 1.0).abs() < slack, "{}: {m} by {integrator} {sampler} {camera} {accelerator}", scene.name);
     }
     // All pixels together; the channels of each share their noise, and those that particles fly to share the particles.
