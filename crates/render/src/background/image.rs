@@ -171,10 +171,22 @@ impl SkyMap {
 
     /// The same, and the density of [`SkyMap::sample`], per solid angle.
     pub fn seen(&self, direction: DVec3) -> ([f32; 3], f64) {
+        if self.is_black() {
+            return ([0.0; 3], 0.0);
+        }
         let place = self.place(direction);
-        let Some(distribution) = &self.distribution else { return ([0.0; 3], 0.0) };
+        (self.color_at(&place), self.pdf_at(&place))
+    }
+
+    /// The density of [`SkyMap::sample`] alone.
+    pub fn pdf(&self, direction: DVec3) -> f64 {
+        self.pdf_at(&self.place(direction))
+    }
+
+    fn pdf_at(&self, place: &Place) -> f64 {
+        let Some(distribution) = &self.distribution else { return 0.0 };
         let pdf = distribution.pdf(place.x, place.y) * self.texels_per_steradian(place.sine);
-        (self.color_at(&place), if pdf.is_finite() { pdf } else { 0.0 })
+        if pdf.is_finite() { pdf } else { 0.0 }
     }
 
     /// A direction, its colour, and its density per solid angle.

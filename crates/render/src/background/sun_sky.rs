@@ -219,7 +219,7 @@ impl SunSky {
     /// The density of [`SunSky::sample`], per solid angle.
     pub fn pdf(&self, direction: DVec3) -> f64 {
         let sun = if self.sun.place(direction).is_some() { 1.0 / self.sun.solid_angle() } else { 0.0 };
-        let sky = if self.sun_share < 1.0 { self.map.seen(direction).1 } else { 0.0 };
+        let sky = if self.sun_share < 1.0 { self.map.pdf(direction) } else { 0.0 };
         self.sun_share * sun + (1.0 - self.sun_share) * sky
     }
 }
