@@ -29,8 +29,8 @@ mod connect;
 mod splats;
 
 use super::forward::{RANGE, Tracer, usual_count};
-use super::path::{self, MAX_DEPTH, Path, ROULETTE_DEPTH, Vertex};
-use super::{Integrator, Landed, Pass, PathState, StepOutput, crossing, particle};
+use super::path::{self, MAX_DEPTH, Path, ROULETTE_DEPTH};
+use super::{Integrator, Landed, Pass, PathState, StepOutput, particle};
 use crate::lights::pick::SELECTION;
 use crate::media::{FlightEnd, Way};
 use crate::observe::PathEnd;
@@ -161,18 +161,9 @@ impl Integrator for Shown {
             return;
         };
         path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
-        if crossing::is_covered(scene, &path, hit) {
-            out.paths.extend(crossing::passed(&path, hit));
-            return;
-        }
-        path::see_emission(scene, &path, hit, out);
-        if path.depth >= self.settings.max_depth {
-            out.end = Some(PathEnd::Depth);
-            return;
-        }
 
         // Go on where no particle could have come from.
-        let vertex = Vertex::new(scene, &path, hit);
+        let Some(vertex) = path::reach(scene, &path, hit, self.settings.max_depth, out) else { return };
         if vertex.lobes.intersects(LobeSet::DELTA) {
             vertex.send_on(scene, &path, sampler, LobeSet::DELTA, self.settings.path.roulette_depth, out);
         } else {

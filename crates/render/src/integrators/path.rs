@@ -91,25 +91,8 @@ impl Integrator for Path {
             return;
         };
 
-        // Pass boundaries that another body covers.
-        if crossing::is_covered(scene, path, hit) {
-            out.paths.extend(crossing::passed(path, hit));
-            return;
-        }
-
-        // A surface that shines is seen.
-        see_emission(scene, path, hit, out);
-        if path.depth >= self.max_depth {
-            out.end = Some(PathEnd::Depth);
-            return;
-        }
-
         // Ask a light, and go on.
-        let vertex = Vertex::new(scene, path, hit);
-        if vertex.lobes.is_empty() {
-            out.end = Some(PathEnd::Absorbed);
-            return;
-        }
+        let Some(vertex) = reach(scene, path, hit, self.max_depth, out) else { return };
         if vertex.lobes.intersects(LobeSet::NON_DELTA) {
             out.shadow_rays.extend(vertex.ask_light(scene, path, sampler, LobeSet::ALL));
         }
@@ -177,6 +160,31 @@ fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette
     out.paths.push(next);
 }
 
+/// The surface at the path's end, after it was seen to shine; `None` where a covered boundary is passed or the path ends.
+pub(super) fn reach<'a>(
+    scene: &Scene,
+    path: &PathState,
+    hit: &'a SurfaceHit,
+    max_depth: u32,
+    out: &mut StepOutput,
+) -> Option<Vertex<'a>> {
+    if crossing::is_covered(scene, path, hit) {
+        out.paths.extend(crossing::passed(path, hit));
+        return None;
+    }
+    see_emission(scene, path, hit, out);
+    if path.depth >= max_depth {
+        out.end = Some(PathEnd::Depth);
+        return None;
+    }
+    let vertex = Vertex::new(scene, path, hit);
+    if vertex.lobes.is_empty() {
+        out.end = Some(PathEnd::Absorbed);
+        return None;
+    }
+    Some(vertex)
+}
+
 /// The path sees the background and ends.
 pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
     let (sky, weight) = match (&path.last, scene.background_light) {
@@ -194,7 +202,7 @@ pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
 }
 
 /// The path sees the surface shine, if it does.
-pub(super) fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
+fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
     let emitted = scene.emitted(&path.lanes, hit);
     if !emitted.is_black() {
         let weight = match (&path.last, scene.pickable_of(hit)) {

@@ -32,7 +32,6 @@ use super::forward::{Arrival, Place, Receiver, Tracer, usual_count};
 use super::path::{self, MAX_DEPTH, ROULETTE_DEPTH, Vertex};
 use super::{Integrator, Pass, PathState, Shared, StepOutput, crossing};
 use crate::camera::CameraSample;
-use crate::observe::PathEnd;
 use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -171,20 +170,9 @@ impl Integrator for Gatherer {
         };
         let mut path = *path;
         path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
-        if crossing::is_covered(scene, &path, hit) {
-            out.paths.extend(crossing::passed(&path, hit));
-            return;
-        }
-        path::see_emission(scene, &path, hit, out);
-        if path.depth >= self.settings.max_depth {
-            out.end = Some(PathEnd::Depth);
-            return;
-        }
-        let vertex = Vertex::new(scene, &path, hit);
+        let Some(vertex) = path::reach(scene, &path, hit, self.settings.max_depth, out) else { return };
         let roulette_depth = self.settings.roulette_depth;
-        if vertex.lobes.is_empty() {
-            out.end = Some(PathEnd::Absorbed);
-        } else if !vertex.lobes.intersects(LobeSet::DIFFUSE) {
+        if !vertex.lobes.intersects(LobeSet::DIFFUSE) {
             if vertex.lobes.intersects(LobeSet::NON_DELTA) {
                 out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::ALL));
             }

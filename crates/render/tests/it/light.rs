@@ -1,6 +1,6 @@
 //! `light` against `path`, pixel by pixel, and against itself in pieces.
 
-use crate::support::{assert_agree, expose, noisy, pixel, prepared, prepared_with};
+use crate::support::{ROOM, assert_agree, expose, noisy, pixel, prepared, prepared_with};
 use kirkas_formats::{FormatAssets, load};
 use kirkas_render::render::Undisturbed;
 use kirkas_render::{Film, Options, prepare};
@@ -63,27 +63,6 @@ fn blocks(film: &Film) -> (Vec<f64>, Vec<f64>) {
     }
     (means, variances)
 }
-
-/// A closed box of 4 x 3 x 4 with a lamp in it.
-const ROOM: &str = "
-[materials.wall]
-type = \"lambert\"
-reflectance = [0.7, 0.5, 0.3]
-[objects.room]
-type = \"box\"
-min = [-2, 0, -2]
-max = [2, 3, 2]
-material = \"wall\"
-[materials.lamp]
-type = \"emitter\"
-radiance = 6
-[objects.lamp]
-type = \"rectangle\"
-center = [0, 2.9, 0]
-edge_u = [1, 0, 0]
-edge_v = [0, 0, 1]
-material = \"lamp\"
-";
 
 fn ball(name: &str, center: &str, radius: f32, material: &str) -> String {
     format!(

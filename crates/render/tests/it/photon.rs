@@ -1,6 +1,6 @@
 //! `photon` against `path`, against closed forms, and against itself in pieces.
 
-use crate::support::{pixels, prepared};
+use crate::support::{ROOM, pixels, prepared};
 use kirkas_geometry::DVec3;
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_optics::Lanes;
@@ -33,27 +33,6 @@ fn mean(film: &Film) -> f64 {
     let all = pixels(film);
     all.iter().map(|p| p.iter().sum::<f64>()).sum::<f64>() / (3 * all.len()) as f64
 }
-
-/// A closed box of 4 x 3 x 4 with a lamp in it.
-const ROOM: &str = "
-[materials.wall]
-type = \"lambert\"
-reflectance = [0.7, 0.5, 0.3]
-[objects.room]
-type = \"box\"
-min = [-2, 0, -2]
-max = [2, 3, 2]
-material = \"wall\"
-[materials.lamp]
-type = \"emitter\"
-radiance = 6
-[objects.lamp]
-type = \"rectangle\"
-center = [0, 2.9, 0]
-edge_u = [1, 0, 0]
-edge_v = [0, 0, 1]
-material = \"lamp\"
-";
 
 /// Scenes that both integrators can do: what they hold, and how far the means of the pictures may be from each other.
 const CASES: [(&str, &str, f64); 5] = [

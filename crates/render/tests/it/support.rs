@@ -12,6 +12,27 @@ use std::ops::Range;
 /// A colour, or any three numbers, in double precision.
 pub type Rgb = [f64; 3];
 
+/// A closed box of 4 x 3 x 4 with a lamp in it.
+pub const ROOM: &str = "
+[materials.wall]
+type = \"lambert\"
+reflectance = [0.7, 0.5, 0.3]
+[objects.room]
+type = \"box\"
+min = [-2, 0, -2]
+max = [2, 3, 2]
+material = \"wall\"
+[materials.lamp]
+type = \"emitter\"
+radiance = 6
+[objects.lamp]
+type = \"rectangle\"
+center = [0, 2.9, 0]
+edge_u = [1, 0, 0]
+edge_v = [0, 0, 1]
+material = \"lamp\"
+";
+
 /// Compile a scene that stands in `toml`, with other files beside it.
 pub fn prepared_with(toml: &str, files: &[(&str, &[u8])], options: &Options) -> Prepared {
     let mut all = MemoryFiles::default();
