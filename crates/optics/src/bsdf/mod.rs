@@ -29,6 +29,7 @@ pub mod emitter;
 pub mod hull;
 pub mod lambert;
 pub mod mirror;
+pub mod oren_nayar;
 pub mod phong;
 pub mod rough_conductor;
 pub mod rough_dielectric;
@@ -38,6 +39,7 @@ mod boundary;
 mod conductor_body;
 mod lobes;
 mod mirror_body;
+mod opaque;
 mod phong_body;
 
 pub use boundary::Interface;
@@ -55,6 +57,7 @@ models! {
     rough_conductor RoughConductor,
     emitter Emitter,
     hull Hull,
+    oren_nayar OrenNayar,
 }
 
 /// What travels along `wo`.

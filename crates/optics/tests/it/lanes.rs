@@ -39,14 +39,15 @@ fn colours_enter_and_leave_unchanged_and_the_fourth_lane_stays_idle() {
 
 #[test]
 fn parameters_are_kept_in_their_rows_ranges() {
-    let row = |spec: usize, name: &str| SPECS[spec].params.iter().find(|p| p.name == name).unwrap();
+    let spec = |model: &str| SPECS.iter().find(|s| s.name == model).unwrap();
+    let row = |model: &str, name: &str| spec(model).params.iter().find(|p| p.name == name).unwrap();
     let l = Lanes::RGB;
-    assert_eq!(l.parameter(row(0, "reflectance"), [0.5, 2.0, 0.1]), Light([0.5, 1.0, 0.1, 0.0]));
-    assert_eq!(l.parameter(row(1, "specular"), [0.5, 2.0, 0.1]), Light([0.5, 2.0, 0.1, 0.0]));
-    assert_eq!(l.parameter(row(1, "exponent"), [3.0, 6.0, 9.0]), Light::splat(6.0));
-    assert_eq!(l.parameter(row(5, "roughness"), [3.0; 3]), Light::splat(1.0));
-    assert_eq!(l.parameter(row(5, "roughness"), [-3.0; 3]), Light::splat(0.0));
-    assert_eq!(l.parameter(row(5, "roughness"), [f32::NAN; 3]), Light::splat(0.0));
+    assert_eq!(l.parameter(row("lambert", "reflectance"), [0.5, 2.0, 0.1]), Light([0.5, 1.0, 0.1, 0.0]));
+    assert_eq!(l.parameter(row("phong", "specular"), [0.5, 2.0, 0.1]), Light([0.5, 2.0, 0.1, 0.0]));
+    assert_eq!(l.parameter(row("phong", "exponent"), [3.0, 6.0, 9.0]), Light::splat(6.0));
+    assert_eq!(l.parameter(row("rough_mirror", "roughness"), [3.0; 3]), Light::splat(1.0));
+    assert_eq!(l.parameter(row("rough_mirror", "roughness"), [-3.0; 3]), Light::splat(0.0));
+    assert_eq!(l.parameter(row("rough_mirror", "roughness"), [f32::NAN; 3]), Light::splat(0.0));
 }
 
 #[test]

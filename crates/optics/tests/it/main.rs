@@ -5,11 +5,13 @@ mod closed_forms;
 mod delta;
 mod distribution;
 mod energy;
+mod extremes;
 mod indices;
 mod lanes;
 mod microfacet;
 mod models;
 mod phase;
+mod reference;
 mod spectrum;
 mod values;
 

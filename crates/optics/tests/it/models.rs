@@ -2,8 +2,8 @@
 
 use kirkas_geometry::Vec3;
 use kirkas_optics::bsdf::texture_rows;
-use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Palette, SPECS};
-use kirkas_scene::{Catalog, Entity, Kind, Map, ParamType, Params, TypeSpec, Value};
+use kirkas_optics::{Bsdf, BsdfModel, ColorMode, Interface, Lanes, Light, Palette, SPECS};
+use kirkas_scene::{Catalog, Entity, Kind, Map, Node, ParamType, Params, TypeSpec, Value};
 
 /// A model with parameters, between two media.
 pub struct Case {
@@ -11,10 +11,12 @@ pub struct Case {
     pub model: BsdfModel,
     pub bsdf: Bsdf,
     pub interface: Interface,
-    /// Conserves energy and is reciprocal.
-    pub is_physical: bool,
-    /// Reflectance and transmittance add up to no more than 1.
+    /// As bright both ways.
+    pub is_reciprocal: bool,
+    /// Sends out no more power than it gets; else at most this many times as much radiance.
     pub is_bounded: bool,
+    /// Light that crosses it is scaled as physics has it.
+    pub scales_radiance: bool,
 }
 
 impl Case {
@@ -28,12 +30,49 @@ pub fn parse(pairs: &[(&str, Value)]) -> Map {
     pairs.iter().fold(Map::default(), |m, (n, v)| m.with(n, v.clone()))
 }
 
+/// A parameter set in short: `name=value` words, colours as `r,g,b`, and `outside`, the index above.
+pub fn set(words: &str) -> (Map, f32) {
+    let mut outside = 1.0;
+    let mut map = Map::default();
+    for word in words.split_whitespace() {
+        let (name, text) = word.split_once('=').expect("name=value");
+        let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.parse().ok()).collect();
+        let value = match (text, numbers) {
+            ("true" | "false", _) => Value::from(text == "true"),
+            (_, None) => Value::from(text),
+            (_, Some(one)) if one.len() == 1 => Value::Float(one[0]),
+            (_, Some(many)) => Value::List(many.into_iter().map(|x| Node::new(Value::Float(x))).collect()),
+        };
+        match (name, &value) {
+            ("outside", Value::Float(x)) => outside = *x as f32,
+            _ => map = map.with(name, value),
+        }
+    }
+    (map, outside)
+}
+
+/// The palette and the lanes of a render.
+#[derive(Clone, Copy)]
+pub enum Colors {
+    Rgb,
+    Spectral(f32),
+}
+
 /// Make a model from its parameters alone, `outside` the refractive index above it.
 pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
+    build_in(Colors::Rgb, type_name, params, outside)
+}
+
+/// The same in a spectral render.
+pub fn build_in(colors: Colors, type_name: &str, params: &Map, outside: f32) -> Case {
+    let (palette, lanes) = match colors {
+        Colors::Rgb => (Palette::RGB, Lanes::RGB),
+        Colors::Spectral(u) => (Palette::new(ColorMode::Spectral), Lanes::spectral(u)),
+    };
     let catalog = Catalog { types: SPECS.iter().collect(), common: Vec::new() };
     let entity = Entity::new("it", type_name, params.clone());
     let params = Params::new(&entity, Kind::Material, &catalog).expect("a listed model");
-    let model = BsdfModel::prepare(&params, &Palette::RGB).expect("a listed model");
+    let model = BsdfModel::prepare(&params, &palette).expect("a listed model");
     let rgb = |v: f64| [v as f32; 3];
     let slots: Vec<Light> = texture_rows(model.spec())
         .map(|row| {
@@ -41,26 +80,33 @@ pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
                 ParamType::NumberTexture => rgb(params.number(row.name)),
                 _ => params.color(row.name).map(|x| x as f32),
             };
-            Lanes::RGB.parameter(row, value)
+            lanes.parameter(row, value)
         })
         .collect();
     let below = model.medium().map_or(outside, |m| m.ior.at_d_line());
     let interface = Interface::new(outside, below);
-    let bsdf = model.at(&Lanes::RGB, &slots, interface);
-    let classic = params.entity.params.get("form").and_then(|n| n.text()) == Some("classic");
-    let constant_pane =
-        params.entity.params.get("fresnel").map_or(type_name.contains("phong"), |n| n.text() == Some("constant"))
-            && model.medium().is_some();
+    let bsdf = model.at(&lanes, &slots, interface);
+    let written = |name: &str| params.entity.params.get(name).and_then(Node::text);
+    let classic = written("form") == Some("classic");
+    let is_constant = written("fresnel").map_or(type_name.contains("phong"), |word| word == "constant");
     let label = format!("{type_name} {:?}", entity.params.iter().map(|(n, v)| (&n.text, &v.value)).collect::<Vec<_>>());
-    Case { label, model, bsdf, interface, is_physical: !classic && !constant_pane, is_bounded: !classic }
+    Case {
+        label,
+        is_reciprocal: !(classic && type_name.contains("phong")),
+        is_bounded: !classic,
+        scales_radiance: !(is_constant && model.medium().is_some()),
+        model,
+        bsdf,
+        interface,
+    }
 }
 
 /// At least three sets for each type; a listed model without them fails.
-fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
+pub fn parameter_sets(type_name: &str) -> Vec<(Map, f32)> {
     let n = |name, v: f64| (name, Value::Float(v));
     let c = |name, v: [f64; 3]| (name, Value::from(v));
     let t = |name, v: &str| (name, Value::from(v));
-    match type_name {
+    let sets = match type_name {
         "lambert" => {
             vec![(vec![], 1.0), (vec![c("reflectance", [0.9, 0.2, 0.05])], 1.0), (vec![n("reflectance", 1.0)], 1.33)]
         }
@@ -130,6 +176,21 @@ fn parameter_sets(type_name: &str) -> Vec<(Vec<(&'static str, Value)>, f32)> {
             (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
         ],
         "hull" => vec![(vec![], 1.0), (vec![], 1.33), (vec![("priority", Value::Int(3))], 1.0)],
+        other => return short_sets(other).iter().map(|words| set(words)).collect(),
+    };
+    sets.into_iter().map(|(pairs, outside)| (parse(&pairs), outside)).collect()
+}
+
+/// The same in short.
+fn short_sets(type_name: &str) -> &'static [&'static str] {
+    match type_name {
+        "oren_nayar" => &[
+            "",
+            "reflectance=1 roughness=1",
+            "reflectance=0.8,0.6,0.4 roughness=0.5 form=full",
+            "reflectance=0.9 roughness=1.5 form=full",
+            "reflectance=0.8,0.6,0.4 roughness=0.5 form=qualitative",
+        ],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }
@@ -140,7 +201,7 @@ pub fn cases() -> Vec<Case> {
     for spec in SPECS {
         let sets = parameter_sets(spec.name);
         assert!(sets.len() >= 3, "`{}` wants three parameter sets", spec.name);
-        all.extend(sets.iter().map(|(pairs, outside)| build(spec.name, &parse(pairs), *outside)));
+        all.extend(sets.iter().map(|(params, outside)| build(spec.name, params, *outside)));
     }
     all
 }
@@ -154,42 +215,33 @@ pub fn outgoing() -> Vec<Vec3> {
 }
 
 #[test]
-fn the_list_holds_each_model_once_with_the_rows_of_the_catalogue() {
-    let names: Vec<&str> = SPECS.iter().map(|s| s.name).collect();
-    assert_eq!(
-        names,
-        [
-            "lambert",
-            "phong",
-            "blinn_phong",
-            "mirror",
-            "dielectric",
-            "rough_mirror",
-            "rough_dielectric",
-            "conductor",
-            "rough_conductor",
-            "emitter",
-            "hull"
-        ]
-    );
+fn the_list_holds_each_model_once_with_its_rows() {
+    let mut names: Vec<&str> = SPECS.iter().map(|s| s.name).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), SPECS.len());
     assert!(SPECS.iter().all(|s| s.kind == Kind::Material && !s.doc.is_empty()));
-    let rows = |i: usize| SPECS[i].params.iter().map(|p| p.name).collect::<Vec<_>>();
-    assert_eq!(rows(0), ["reflectance"]);
+    let spec = |name: &str| SPECS.iter().find(|s| s.name == name).unwrap();
+    let rows = |name: &str| spec(name).params.iter().map(|p| p.name).collect::<Vec<_>>();
+    assert_eq!(rows("lambert"), ["reflectance"]);
     let phong =
         ["diffuse", "specular", "exponent", "form", "ambient", "reflect", "transmit", "ior", "fresnel", "priority"];
-    assert_eq!((rows(1), rows(2)), (phong.to_vec(), phong.to_vec()));
-    assert_eq!(rows(4), ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "interior"]);
+    assert_eq!((rows("phong"), rows("blinn_phong")), (phong.to_vec(), phong.to_vec()));
+    assert_eq!(
+        rows("dielectric"),
+        ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "interior"]
+    );
     let rough = ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "roughness", "interior"];
-    assert_eq!(rows(6), rough);
-    let textured: Vec<&str> = texture_rows(&SPECS[1]).map(|r| r.name).collect();
+    assert_eq!(rows("rough_dielectric"), rough);
+    let textured: Vec<&str> = texture_rows(spec("phong")).map(|r| r.name).collect();
     assert_eq!(textured, ["diffuse", "specular", "exponent", "ambient", "reflect", "transmit"]);
 }
 
 #[test]
 fn a_type_that_is_no_material_is_no_model() {
-    static OTHER: TypeSpec = TypeSpec { kind: Kind::Material, name: "velvet", doc: "", params: &[] };
+    static OTHER: TypeSpec = TypeSpec { kind: Kind::Material, name: "nothing", doc: "", params: &[] };
     let catalog = Catalog { types: vec![&OTHER], common: Vec::new() };
-    let entity = Entity::new("it", "velvet", Map::default());
+    let entity = Entity::new("it", "nothing", Map::default());
     assert!(BsdfModel::prepare(&Params::new(&entity, Kind::Material, &catalog).unwrap(), &Palette::RGB).is_none());
 }
 
