@@ -24,9 +24,11 @@ use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 
 pub mod blinn_phong;
 pub mod conductor;
+pub mod cook_torrance;
 pub mod dielectric;
 pub mod emitter;
 pub mod hull;
+pub mod lafortune;
 pub mod lambert;
 pub mod mirror;
 pub mod oren_nayar;
@@ -34,6 +36,7 @@ pub mod phong;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
+pub mod ward;
 
 mod boundary;
 mod conductor_body;
@@ -41,6 +44,7 @@ mod lobes;
 mod mirror_body;
 mod opaque;
 mod phong_body;
+mod roughness;
 
 pub use boundary::Interface;
 pub use lobes::{Lobe, LobeSet};
@@ -58,6 +62,9 @@ models! {
     emitter Emitter,
     hull Hull,
     oren_nayar OrenNayar,
+    cook_torrance CookTorrance,
+    lafortune Lafortune,
+    ward Ward,
 }
 
 /// What travels along `wo`.

@@ -85,6 +85,11 @@ fn grey(params: &Map) -> Option<Map> {
             Value::Map(_) => return None,
             _ if name.text == "film_thickness" => return None,
             Value::List(list) if is_colour => list[0].value.clone(),
+            // Seven numbers to a lobe, the last three its colour.
+            Value::List(list) if name.text == "lobes" => {
+                let place = |i: usize| if i % 7 > 4 { i - (i % 7 - 4) } else { i };
+                Value::List((0..list.len()).map(|i| list[place(i)].clone()).collect())
+            }
             other => other.clone(),
         };
         out = out.with(&name.text, Node::new(value).value);

@@ -191,6 +191,21 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "reflectance=0.9 roughness=1.5 form=full",
             "reflectance=0.8,0.6,0.4 roughness=0.5 form=qualitative",
         ],
+        "cook_torrance" => &[
+            "diffuse=0.1,0.2,0.3 specular=0.5,0.6,0.7 roughness=0.3",
+            "diffuse=0.2 specular=0.8 roughness=0.5 form=classic fresnel=schlick ior=1.8",
+            "diffuse=0 specular=1 roughness=0.8 fresnel=constant outside=1.33",
+        ],
+        "lafortune" => &[
+            "diffuse=0.1,0.2,0.3 lobes=-0.86,-0.86,0.9,16,0.3,0.25,0.2,0.71,0.71,0.69,15,0.05,0.06,0.1",
+            "diffuse=0 lobes=-1,-1,1,40,6,6,6",
+            "diffuse=0.2 lobes=-0.9,-0.6,0.8,5.5,0.3,0.2,0.1,-0.5,-0.5,1.05,30,0.3,0.3,0.3,0.6,0.5,0.4,3,0.1,0.1,0.2",
+        ],
+        "ward" => &[
+            "diffuse=0.3,0.2,0.1 specular=0.5,0.6,0.7 roughness=0.3",
+            "diffuse=0 specular=1 roughness=0.4 anisotropy=0.6",
+            "diffuse=0.2 specular=0.3 roughness=0.5 anisotropy=-0.5 form=classic",
+        ],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }
