@@ -22,6 +22,7 @@ use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
 use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 
+pub mod ashikhmin_shirley;
 pub mod blinn_phong;
 pub mod conductor;
 pub mod cook_torrance;
@@ -63,6 +64,7 @@ models! {
     hull Hull,
     oren_nayar OrenNayar,
     cook_torrance CookTorrance,
+    ashikhmin_shirley AshikhminShirley,
     lafortune Lafortune,
     ward Ward,
 }

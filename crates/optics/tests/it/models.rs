@@ -196,6 +196,11 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "diffuse=0.2 specular=0.8 roughness=0.5 form=classic fresnel=schlick ior=1.8",
             "diffuse=0 specular=1 roughness=0.8 fresnel=constant outside=1.33",
         ],
+        "ashikhmin_shirley" => &[
+            "diffuse=0.3,0.5,0.2 specular=0.04,0.1,0.2 exponent_u=30 exponent_v=30",
+            "diffuse=0 specular=0.9,0.8,0.7 exponent_u=200 exponent_v=10",
+            "diffuse=0.8 specular=0.5 exponent_u=3 exponent_v=40",
+        ],
         "lafortune" => &[
             "diffuse=0.1,0.2,0.3 lobes=-0.86,-0.86,0.9,16,0.3,0.25,0.2,0.71,0.71,0.69,15,0.05,0.06,0.1",
             "diffuse=0 lobes=-1,-1,1,40,6,6,6",
