@@ -9,6 +9,7 @@ pub mod fresnel;
 pub mod index;
 pub mod lanes;
 pub mod light;
+pub mod measured;
 pub mod medium;
 pub mod microfacet;
 pub mod phase;

@@ -1,11 +1,15 @@
-//! Everything by wavelength that a scene names: known names are looked up, files are read, and what is wrong is told.
+//! Everything by wavelength or measured that a scene names: known names are looked up, files are read, and what is wrong is
+//! told.
 
 use kirkas_optics::index::{MetalCurves, file as index_file, known};
+use kirkas_optics::measured::MeasuredData;
 use kirkas_optics::spectrum::file::read_pairs;
 use kirkas_optics::spectrum::illuminants;
 use kirkas_optics::{ColorMode, Palette};
 use kirkas_scene::diagnostic::unknown_name;
 use kirkas_scene::{Assets, Catalog, Description, Diagnostic, Entity, Kind, Node, ParamSpec, ParamType, Span};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The palette of a validated description.
 pub(crate) fn palette(
@@ -14,13 +18,17 @@ pub(crate) fn palette(
     assets: &dyn Assets,
     mode: ColorMode,
 ) -> Result<Palette, Vec<Diagnostic>> {
-    let mut reader = Reader { palette: Palette::new(mode), assets, found: Vec::new() };
+    let mut reader = Reader { palette: Palette::new(mode), assets, found: Vec::new(), measured: BTreeSet::new() };
     for kind in Kind::ALL {
         for entity in d.all(kind) {
             let Some(spec) = catalog.find(kind, &entity.type_name.text) else { continue };
             for row in catalog.rows(spec) {
-                if let Some(node) = entity.params.get(row.name).filter(|n| n.map().is_some()) {
+                let Some(node) = entity.params.get(row.name) else { continue };
+                if node.map().is_some() {
                     reader.visit(kind, entity, row, node);
+                }
+                if kind == Kind::Material && row.ty == ParamType::Path {
+                    reader.measured_file(node);
                 }
             }
         }
@@ -32,6 +40,8 @@ struct Reader<'a> {
     palette: Palette,
     assets: &'a dyn Assets,
     found: Vec<Diagnostic>,
+    /// Files of measured reflectance that were read, by source and path.
+    measured: BTreeSet<(u32, String)>,
 }
 
 impl Reader<'_> {
@@ -94,6 +104,24 @@ impl Reader<'_> {
         }
     }
 
+    fn measured_file(&mut self, node: &Node) {
+        let path = node.text().unwrap_or_default();
+        if !self.measured.insert((node.span.source.0, path.to_string())) {
+            return;
+        }
+        let read = self.bytes(node, path).and_then(|b| {
+            MeasuredData::read(&b).map_err(|e| {
+                Diagnostic::error("bad-measured", format!("`{path}` cannot be read: {e}"))
+                    .at(node.span, "this file")
+                    .help("measured materials come as MERL `.binary`")
+            })
+        });
+        match read {
+            Ok(data) => self.palette.add_measured(node.span, path, Arc::new(data)),
+            Err(e) => self.found.push(e),
+        }
+    }
+
     fn check_metal(&mut self, entity: &Entity, value: &Node, has_extinction: bool) {
         if entity.type_name.text.ends_with("conductor") && !has_extinction {
             self.found.push(
@@ -104,10 +132,14 @@ impl Reader<'_> {
         }
     }
 
-    fn text(&self, value: &Node, path: &str) -> Result<String, Diagnostic> {
+    fn bytes(&self, value: &Node, path: &str) -> Result<Arc<[u8]>, Diagnostic> {
         let from = value.span.is_some().then_some(value.span.source);
         let bytes = self.assets.bytes(from, path);
-        let bytes = bytes.map_err(|e| if e.labels.is_empty() { e.at(value.span, "named here") } else { e })?;
+        bytes.map_err(|e| if e.labels.is_empty() { e.at(value.span, "named here") } else { e })
+    }
+
+    fn text(&self, value: &Node, path: &str) -> Result<String, Diagnostic> {
+        let bytes = self.bytes(value, path)?;
         String::from_utf8(bytes.to_vec()).map_err(|_| bad_file(value.span, path, "it is no text (UTF-8)"))
     }
 }

@@ -31,6 +31,7 @@ pub mod emitter;
 pub mod hull;
 pub mod lafortune;
 pub mod lambert;
+pub mod measured;
 pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
@@ -61,6 +62,7 @@ models! {
     conductor Conductor,
     rough_conductor RoughConductor,
     emitter Emitter,
+    measured Measured,
     hull Hull,
     oren_nayar OrenNayar,
     cook_torrance CookTorrance,

@@ -15,10 +15,12 @@ mod tables;
 
 use crate::index::OpticalConstants;
 use crate::lanes::ColorMode;
+use crate::measured::MeasuredData;
 use crate::{Lanes, Light};
 use curve::Curve;
 pub use paint::Paint;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Makes [`Spectrum`]s for the way in which a render carries colour.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,6 +29,7 @@ pub struct Palette {
     /// Files that the scene names, by source and path.
     spectra: BTreeMap<(u32, String), Vec<(f64, f64)>>,
     constants: BTreeMap<(u32, String), OpticalConstants>,
+    measured: BTreeMap<(u32, String), Arc<MeasuredData>>,
 }
 
 /// A compiled colour.
@@ -53,7 +56,12 @@ enum Waves {
 
 impl Palette {
     /// For paths with [`Lanes::RGB`].
-    pub const RGB: Self = Palette { mode: ColorMode::Rgb, spectra: BTreeMap::new(), constants: BTreeMap::new() };
+    pub const RGB: Self = Palette {
+        mode: ColorMode::Rgb,
+        spectra: BTreeMap::new(),
+        constants: BTreeMap::new(),
+        measured: BTreeMap::new(),
+    };
 
     /// For renders that carry colour this way.
     pub fn new(mode: ColorMode) -> Self {

@@ -8,7 +8,9 @@ use super::observer::observer;
 use super::{Palette, Spectrum, Waves, illuminants};
 use crate::index::formula::Formula;
 use crate::index::{Index, OpticalConstants, known};
+use crate::measured::MeasuredData;
 use kirkas_scene::{Node, Params, Span};
+use std::sync::Arc;
 
 /// The colour of something that shines: linear Rec.709, and what stands behind it if it was given by wavelength.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +91,17 @@ impl Palette {
         }
         let file = map.get("file")?;
         self.constants.get(&(file.span.source.0, file.text()?.to_string())).cloned()
+    }
+
+    /// Let scenes name a file of measured reflectance; `from` is the place that names it.
+    pub fn add_measured(&mut self, from: Span, path: &str, data: Arc<MeasuredData>) {
+        self.measured.insert((from.source.0, path.to_string()), data);
+    }
+
+    /// The measured reflectance in the file that the parameter `name` names.
+    pub fn measured(&self, params: &Params, name: &str) -> Option<Arc<MeasuredData>> {
+        let file = params.entity.params.get(name)?;
+        self.measured.get(&(file.span.source.0, file.text()?.to_string())).cloned()
     }
 
     /// The refractive index that the parameter `name` says.

@@ -84,6 +84,7 @@ fn grey(params: &Map) -> Option<Map> {
         let value = match &node.value {
             Value::Map(_) => return None,
             _ if name.text == "film_thickness" => return None,
+            Value::Text(file) if name.text == "file" && !file.starts_with("grey") => return None,
             Value::List(list) if is_colour => list[0].value.clone(),
             // Seven numbers to a lobe, the last three its colour.
             Value::List(list) if name.text == "lobes" => {

@@ -8,10 +8,12 @@ mod energy;
 mod extremes;
 mod indices;
 mod lanes;
+mod merl;
 mod microfacet;
 mod models;
 mod phase;
 mod reference;
+mod samples;
 mod spectrum;
 mod values;
 

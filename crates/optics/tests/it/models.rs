@@ -1,5 +1,6 @@
 //! Parameter sets for every model, and models made from them.
 
+use crate::samples;
 use kirkas_geometry::Vec3;
 use kirkas_optics::bsdf::texture_rows;
 use kirkas_optics::{Bsdf, BsdfModel, ColorMode, Interface, Lanes, Light, Palette, SPECS};
@@ -65,14 +66,19 @@ pub fn build(type_name: &str, params: &Map, outside: f32) -> Case {
 
 /// The same in a spectral render.
 pub fn build_in(colors: Colors, type_name: &str, params: &Map, outside: f32) -> Case {
-    let (palette, lanes) = match colors {
-        Colors::Rgb => (Palette::RGB, Lanes::RGB),
-        Colors::Spectral(u) => (Palette::new(ColorMode::Spectral), Lanes::spectral(u)),
+    let (mode, lanes) = match colors {
+        Colors::Rgb => (ColorMode::Rgb, Lanes::RGB),
+        Colors::Spectral(u) => (ColorMode::Spectral, Lanes::spectral(u)),
     };
+    build_with(&samples::palette(mode), lanes, type_name, params, outside)
+}
+
+/// The same, with files of its own.
+pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map, outside: f32) -> Case {
     let catalog = Catalog { types: SPECS.iter().collect(), common: Vec::new() };
     let entity = Entity::new("it", type_name, params.clone());
     let params = Params::new(&entity, Kind::Material, &catalog).expect("a listed model");
-    let model = BsdfModel::prepare(&params, &palette).expect("a listed model");
+    let model = BsdfModel::prepare(&params, palette).expect("a listed model");
     let rgb = |v: f64| [v as f32; 3];
     let slots: Vec<Light> = texture_rows(model.spec())
         .map(|row| {
@@ -175,6 +181,7 @@ pub fn parameter_sets(type_name: &str) -> Vec<(Map, f32)> {
             (vec![n("intensity", 5.0), c("reflectance", [0.2, 0.5, 0.9])], 1.0),
             (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
         ],
+        "measured" => samples::LISTED.iter().map(|file| (vec![t("file", file)], 1.0)).collect(),
         "hull" => vec![(vec![], 1.0), (vec![], 1.33), (vec![("priority", Value::Int(3))], 1.0)],
         other => return short_sets(other).iter().map(|words| set(words)).collect(),
     };

@@ -19,6 +19,7 @@ mod light_pieces;
 mod light_sampling;
 mod light_selection;
 mod manuals;
+mod measured;
 mod media;
 mod numbers;
 mod observer;
