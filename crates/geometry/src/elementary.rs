@@ -51,6 +51,40 @@ pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)
 }
 
+/// The error function: `2 / sqrt(pi)` times the integral of `exp(-t^2)` from 0 to x.
+pub fn erf(x: f64) -> f64 {
+    libm::erf(x)
+}
+/// What [`erf`] makes `x` of, for `-1 < x < 1`, to about 1e-6 of it (M. Giles, "Approximating the erfinv Function", GPU Computing
+/// Gems, 2012).
+pub fn erf_inverse(x: f32) -> f32 {
+    const CENTRE: [f32; 9] = [
+        2.810_226_4e-8,
+        3.432_739_4e-7,
+        -3.523_387_7e-6,
+        -4.391_506_5e-6,
+        2.185_808_7e-4,
+        -1.253_725e-3,
+        -4.177_681_6e-3,
+        0.246_640_73,
+        1.501_409_4,
+    ];
+    const TAIL: [f32; 9] = [
+        -2.002_142_6e-4,
+        1.009_505_6e-4,
+        1.349_343_2e-3,
+        -3.673_428_4e-3,
+        5.739_507_7e-3,
+        -7.622_461_3e-3,
+        9.438_870_5e-3,
+        1.001_674_1,
+        2.832_976_8,
+    ];
+    let w = -ln_f32((1.0 - x) * (1.0 + x));
+    let (w, polynomial) = if w < 5.0 { (w - 2.5, &CENTRE) } else { (w.sqrt() - 3.0, &TAIL) };
+    polynomial.iter().fold(0.0, |sum, c| sum * w + c) * x
+}
+
 /// Sine and cosine of an f32 angle in radians.
 pub fn sin_cos_f32(x: f32) -> (f32, f32) {
     let (s, c) = sin_cos(f64::from(x));
@@ -103,6 +137,16 @@ pub fn ln_f32(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_inverse_of_erf_undoes_it() {
+        for i in -9999..=9999 {
+            let x = i as f32 / 10_000.0;
+            let y = f64::from(erf_inverse(x));
+            let slope = 2.0 / core::f64::consts::PI.sqrt() * exp(-y * y);
+            assert!((erf(y) - f64::from(x)).abs() <= 2e-6 * y.abs() * slope + 1e-9, "{x}: {y}");
+        }
+    }
 
     #[test]
     fn sine_and_cosine_of_f32_are_those_of_f64_rounded() {

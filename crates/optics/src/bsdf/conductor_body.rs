@@ -70,6 +70,20 @@ impl Reflective for Metal {
         Light(core::array::from_fn(at)) * self.tint
     }
 
+    /// By the curve through its values at 0, 82 and 90 degrees (Lazányi & Szirmay-Kalos 2005; N. Hoffman, "Fresnel Equations
+    /// Considered Harmful", 2019): `F0 + (1 - F0)(1 - mu)^5 - a mu (1 - mu)^6`, whose mean is `F0 + (1 - F0) / 21 - a / 126`.
+    fn mean(&self) -> Light {
+        const MU: f32 = 1.0 / 7.0;
+        const FIFTH: f32 = 7776.0 / 16807.0;
+        const A: f32 = 46656.0 / 823_543.0;
+        let at = |lane: usize| {
+            let of = |cos| fresnel::conductor(cos, self.n[lane] / self.eta_o, self.k[lane] / self.eta_o);
+            let (f0, f82) = (of(1.0), of(MU));
+            (f0 + (1.0 - f0) / 21.0 - (f0 + (1.0 - f0) * FIFTH - f82) / (126.0 * A)).clamp(0.0, 1.0)
+        };
+        Light(core::array::from_fn(at)) * self.tint
+    }
+
     fn is_black(&self) -> bool {
         self.tint.is_black()
     }

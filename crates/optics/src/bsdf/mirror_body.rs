@@ -1,16 +1,22 @@
-//! What smooth and rough mirrors and conductors share: the mirror, and the mirror of tiny facets (GGX), of whatever reflects.
+//! What smooth and rough mirrors and conductors share: the mirror, and the mirror of tiny facets, of whatever reflects.
 
 use super::boundary::Fresnel;
+use super::opaque::{Opaque, Reflector};
+use super::roughness::Kind;
 use super::{Branches, BsdfSample, Lobe, LobeSet, Mode, Scatter};
 use crate::Light;
 use crate::fresnel::{reflect, schlick};
-use crate::microfacet::Ggx;
+use crate::microfacet::Facets;
+use crate::microfacet::albedo::Losses;
 use kirkas_geometry::Vec3;
+use kirkas_geometry::warp::{square_to_cosine_hemisphere, square_to_cosine_hemisphere_pdf};
 
 /// What a mirror, or one of its facets, reflects.
 pub trait Reflective {
     /// At an angle from the normal.
     fn reflectance(&self, cos: f32) -> Light;
+    /// Its mean over all directions, weighted by their cosines.
+    fn mean(&self) -> Light;
     /// Nothing at any angle.
     fn is_black(&self) -> bool;
 }
@@ -28,6 +34,14 @@ impl Reflective for Tinted {
             Fresnel::Constant => self.reflectance,
             // A lane without any reflectance, the idle one too, stays without.
             _ => self.reflectance.map(|r0| if r0 > 0.0 { schlick(r0, cos) } else { 0.0 }),
+        }
+    }
+
+    fn mean(&self) -> Light {
+        match self.fresnel {
+            Fresnel::Constant => self.reflectance,
+            // 2 int mu (r0 + (1 - r0) (1 - mu)^5) dmu
+            _ => self.reflectance.map(|r0| if r0 > 0.0 { r0 + (1.0 - r0) / 21.0 } else { 0.0 }),
         }
     }
 
@@ -72,62 +86,83 @@ impl<R: Reflective> Scatter for Smooth<R> {
     }
 }
 
-/// A mirror of tiny facets: `f = F D G / (4 (n.v)(n.l))`.
+/// A mirror of tiny facets: `f = F D G / (4 (n.v)(n.l))`, and what bounces among them if that is wanted.
 #[derive(Clone, Debug)]
-pub struct Rough<R> {
+pub struct Facetted<R> {
     pub(super) mirror: R,
-    pub(super) facets: Ggx,
+    pub(super) facets: Facets,
+    /// What is given back, and its colour.
+    pub(super) rest: Option<(Losses, Light)>,
 }
 
-const ROUGH: Lobe = Lobe::GlossyReflection;
+/// It from both sides.
+pub type Rough<R> = Opaque<Facetted<R>>;
 
-/// `v` with z turned over when `wo` is below: the model looks the same from both sides.
-fn upper(v: Vec3, wo: Vec3) -> Vec3 {
-    if wo.z < 0.0 { Vec3::new(v.x, v.y, -v.z) } else { v }
-}
-
-impl<R: Reflective> Scatter for Rough<R> {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(ROUGH).when(!self.mirror.is_black())
+impl<R: Reflective> Facetted<R> {
+    pub(super) fn new(mirror: R, kind: &Kind, roughness: Light, anisotropy: Light) -> Rough<R> {
+        let facets = kind.facets(roughness, anisotropy);
+        let rest = kind.losses(&facets).map(|losses| (losses, mirror.mean().map(|f| losses.tint(f))));
+        Opaque(Facetted { mirror, facets, rest })
     }
 
-    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> Light {
-        if !lobes.contains(ROUGH) || !(wo.z * wi.z > 0.0) {
-            return Light::BLACK;
-        }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
+    /// The chance that a direction is drawn from the lobe of what bounces.
+    fn bounced(&self, wo: Vec3) -> f32 {
+        self.rest.as_ref().map_or(0.0, |(losses, _)| losses.at(wo.z))
+    }
+}
+
+impl<R: Reflective> Reflector for Facetted<R> {
+    fn parts(&self) -> (bool, bool) {
+        (false, !self.mirror.is_black())
+    }
+    fn weights(&self, _: Vec3) -> (f32, f32) {
+        (0.0, 1.0)
+    }
+    fn base(&self, _: Vec3, _: Vec3) -> Light {
+        Light::BLACK
+    }
+
+    #[inline]
+    fn highlight(&self, wo: Vec3, wi: Vec3, _: Mode) -> Light {
         let h = (wo + wi).normalize();
         let dg = self.facets.d(h) * self.facets.g2_reflection(wo, wi) / (4.0 * wo.z * wi.z);
-        self.mirror.reflectance(wo.dot(h)) * dg
+        let once = self.mirror.reflectance(wo.dot(h)) * dg;
+        match &self.rest {
+            Some((losses, tint)) => once + *tint * losses.lobe(wo.z, wi.z),
+            None => once,
+        }
     }
 
-    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
-        if !(lobes & self.lobes()).contains(ROUGH) || !(wo.z * wi.z > 0.0) {
-            return 0.0;
+    #[inline]
+    fn sample_highlight(&self, wo: Vec3, mut u: (f32, f32)) -> Vec3 {
+        let bounced = self.bounced(wo);
+        if bounced > 0.0 {
+            // One number picks the lobe and draws from it.
+            if u.0 < bounced {
+                return square_to_cosine_hemisphere(((u.0 / bounced).min(LAST), u.1));
+            }
+            u.0 = ((u.0 - bounced) / (1.0 - bounced)).min(LAST);
         }
-        let (wo, wi) = (upper(wo, wo), upper(wi, wo));
+        reflect(wo, self.facets.sample_visible_normal(wo, u))
+    }
+
+    #[inline]
+    fn highlight_pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let h = (wo + wi).normalize();
-        self.facets.visible_normal_pdf(wo, h) / (4.0 * wo.dot(h))
-    }
-
-    fn sample(&self, wo: Vec3, _: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
+        let once = self.facets.visible_normal_pdf(wo, h) / (4.0 * wo.dot(h));
+        match self.bounced(wo) {
+            b if b > 0.0 => (1.0 - b) * once + b * square_to_cosine_hemisphere_pdf(wi),
+            _ => once,
         }
-        let up = upper(wo, wo);
-        let wi = upper(reflect(up, self.facets.sample_visible_normal(up, u)), wo);
-        let pdf = self.pdf(wo, wi, lobes, mode);
-        (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample {
-            wi,
-            f: self.eval(wo, wi, lobes, mode),
-            pdf,
-            lobe: ROUGH,
-            eta: 1.0,
-            disperses: false,
-        })
     }
 
-    fn traced_lobes(&self) -> LobeSet {
-        self.lobes()
+    fn ambient(&self) -> Light {
+        Light::BLACK
+    }
+    fn is_traced(&self) -> bool {
+        true
     }
 }
+
+/// The greatest f32 below 1.
+const LAST: f32 = 1.0 - f32::EPSILON / 2.0;

@@ -1,6 +1,6 @@
 //! # rough_conductor
 //!
-//! A metal of tiny facets (GGX), each by Fresnel's equations for a complex refractive index: brushed copper, blasted aluminium.
+//! A metal of tiny facets (GGX or Beckmann), each by Fresnel's equations for a complex refractive index: brushed copper, blasted aluminium.
 //! `f = F D G / (4 (n.v)(n.l))`.
 //!
 //! ## Parameters
@@ -10,7 +10,10 @@
 //! | `ior` | index | | required | `{ material = "copper" }`, `{ file = "Cu.yml" }` of refractiveindex.info, or a number for n |
 //! | `k` | colour | | 0 | extinction coefficient, where `ior` is a number |
 //! | `reflectance` | colour or texture, 0..1 | | 1 | tints the reflection |
-//! | `roughness` | number or texture, 0..1 | | 0.2 | alpha of GGX: about the RMS slope of the facets; 0.05 polished, 0.5 dull |
+//! | `roughness` | number or texture, 0..1 | | 0.2 | alpha: about the RMS slope of the facets; 0.05 polished, 0.5 dull |
+//! | `anisotropy` | number or texture, -1..1 | | 0 | `alpha_u = roughness (1 + anisotropy)` along the texture's u, `alpha_v = roughness (1 - anisotropy)` |
+//! | `distribution` | `ggx`, `beckmann` | | `ggx` | slopes with long tails, or Gaussian ones |
+//! | `compensation` | true or false | | false | gives back the light that bounces among the facets (Kulla & Conty 2017) |
 //!
 //! ## Example
 //!
@@ -23,34 +26,35 @@
 //!
 //! ## Limits
 //!
-//! As `rough_mirror`: light that would bounce among the facets is lost. Colours in RGB mode: as `conductor`.
+//! As `rough_mirror`: light that would bounce among the facets is lost unless `compensation` gives it back. Colours in RGB mode: as `conductor`.
 //!
 //! ## References
 //!
-//! See `microfacet` for GGX, G and sampling, `conductor` for the reflectance.
+//! See `microfacet` for the distributions, G and sampling, `conductor` for the reflectance.
 
 use super::conductor_body::{Constants, IOR, K, Metal, REFLECTANCE_ROW};
-use super::mirror_body::Rough;
-use super::{Interface, Prepare, slot};
-use crate::microfacet::Ggx;
+use super::mirror_body::{Facetted, Rough};
+use super::roughness::{ANISOTROPY, COMPENSATION, DISTRIBUTION, Kind as Facetting};
+use super::{Interface, Prepare, roughness, slot};
 use crate::{Lanes, Light, Palette};
-use kirkas_scene::spec::UNIT;
-use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+use kirkas_scene::{Kind, Params, TypeSpec};
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "rough_conductor",
-    doc: "A metal of tiny facets (GGX), by its complex refractive index.",
-    params: &[IOR, K, REFLECTANCE_ROW, ParamSpec::number_texture("roughness", 0.2, UNIT, "alpha of GGX")],
+    doc: "A metal of tiny facets, by its complex refractive index.",
+    params: &[IOR, K, REFLECTANCE_ROW, roughness::ROUGHNESS, ANISOTROPY, DISTRIBUTION, COMPENSATION],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
 const ROUGHNESS: usize = slot(SPEC.params, "roughness");
+const STRETCH: usize = slot(SPEC.params, "anisotropy");
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     constants: Constants,
+    facetting: Facetting,
 }
 
 /// At a point.
@@ -59,10 +63,10 @@ pub type RoughConductor = Rough<Metal>;
 impl Prepare for Prepared {
     type At = RoughConductor;
     fn prepare(params: &Params, palette: &Palette) -> Self {
-        Prepared { constants: Constants::read(params, palette) }
+        Prepared { constants: Constants::read(params, palette), facetting: Facetting::read(params) }
     }
     fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> RoughConductor {
         let mirror = self.constants.at(lanes, slots[REFLECTANCE], interface.eta_above);
-        Rough { mirror, facets: Ggx::new(slots[ROUGHNESS][0]) }
+        Facetted::new(mirror, &self.facetting, slots[ROUGHNESS], slots[STRETCH])
     }
 }

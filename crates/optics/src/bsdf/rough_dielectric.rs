@@ -1,6 +1,6 @@
 //! # rough_dielectric
 //!
-//! A clear boundary of tiny facets (GGX): frosted glass, ice, worn acrylic. Each facet reflects and refracts as `dielectric`
+//! A clear boundary of tiny facets (GGX or Beckmann): frosted glass, ice, worn acrylic. Each facet reflects and refracts as `dielectric`
 //! does.
 //!
 //! ## Parameters
@@ -14,7 +14,9 @@
 //! | `absorption` | colour | 1/scene unit | 0 | light inside fades as `exp(-absorption distance)` |
 //! | `priority` | whole number | | 0 | among overlapping insides the highest wins |
 //! | `interior` | medium | | none | what scatters inside |
-//! | `roughness` | number or texture, 0..1 | | 0.2 | alpha of GGX: 0.05 hazy, 0.5 frosted |
+//! | `roughness` | number or texture, 0..1 | | 0.2 | alpha: about the RMS slope of the facets; 0.05 polished, 0.5 dull |
+//! | `anisotropy` | number or texture, -1..1 | | 0 | `alpha_u = roughness (1 + anisotropy)` along the texture's u, `alpha_v = roughness (1 - anisotropy)` |
+//! | `distribution` | `ggx`, `beckmann` | | `ggx` | slopes with long tails, or Gaussian ones |
 //!
 //! ## Example
 //!
@@ -33,24 +35,24 @@
 //! ## References
 //!
 //! B. Walter, S. R. Marschner, H. Li & K. E. Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007,
-//! equations 16, 17, 20, 21. See `microfacet` for GGX, G and sampling.
+//! equations 16, 17, 20, 21. See `microfacet` for the distributions, G and sampling.
 
 use super::boundary::{Fresnel, Split, pick, square};
 use super::dielectric::{ABSORPTION, FRESNEL, IOR, PRIORITY, REFLECTANCE_ROW, TRANSMITTANCE_ROW, read_medium};
 use super::hull::INTERIOR;
-use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
+use super::roughness::{ANISOTROPY, DISTRIBUTION, Kind as Facetting};
+use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, roughness, slot};
 use crate::fresnel::{reflect, refract};
-use crate::microfacet::Ggx;
+use crate::microfacet::Facets;
 use crate::{Lanes, Light, Medium, Palette};
 use kirkas_geometry::Vec3;
-use kirkas_scene::spec::UNIT;
-use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+use kirkas_scene::{Kind, Params, TypeSpec};
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "rough_dielectric",
-    doc: "A clear boundary of tiny facets (GGX): frosted glass.",
+    doc: "A clear boundary of tiny facets: frosted glass.",
     params: &[
         IOR,
         FRESNEL,
@@ -58,13 +60,16 @@ pub const SPEC: TypeSpec = TypeSpec {
         TRANSMITTANCE_ROW,
         ABSORPTION,
         PRIORITY,
-        ParamSpec::number_texture("roughness", 0.2, UNIT, "alpha of GGX"),
+        roughness::ROUGHNESS,
+        ANISOTROPY,
+        DISTRIBUTION,
         INTERIOR,
     ],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
 const TRANSMITTANCE: usize = slot(SPEC.params, "transmittance");
 const ROUGHNESS: usize = slot(SPEC.params, "roughness");
+const STRETCH: usize = slot(SPEC.params, "anisotropy");
 
 /// Indices nearer than this (relative) are moved apart to it, or the half vector drowns in rounding.
 const LEAST_CONTRAST: f32 = 1e-3;
@@ -73,6 +78,7 @@ const LEAST_CONTRAST: f32 = 1e-3;
 #[derive(Clone, Debug)]
 pub struct Prepared {
     fresnel: Fresnel,
+    facetting: Facetting,
     medium: Medium,
 }
 
@@ -80,14 +86,18 @@ pub struct Prepared {
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
     split: Split,
-    facets: Ggx,
+    facets: Facets,
     interface: Interface,
 }
 
 impl Prepare for Prepared {
     type At = RoughDielectric;
     fn prepare(params: &Params, palette: &Palette) -> Self {
-        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params, palette) }
+        Prepared {
+            fresnel: Fresnel::of(params.text("fresnel")),
+            facetting: Facetting::read(params),
+            medium: read_medium(params, palette),
+        }
     }
     fn at(&self, _: &Lanes, slots: &[Light], mut interface: Interface) -> RoughDielectric {
         let (above, below) = (interface.eta_above, interface.eta_below);
@@ -96,7 +106,7 @@ impl Prepare for Prepared {
         }
         RoughDielectric {
             split: Split { reflect: slots[REFLECTANCE], transmit: slots[TRANSMITTANCE], fresnel: self.fresnel },
-            facets: Ggx::new(slots[ROUGHNESS][0]),
+            facets: self.facetting.facets(slots[ROUGHNESS], slots[STRETCH]),
             interface,
         }
     }

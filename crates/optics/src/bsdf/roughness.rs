@@ -7,9 +7,10 @@
 //! (alpha_u + alpha_v).
 
 use crate::Light;
-use crate::microfacet::LEAST_ALPHA;
-use kirkas_scene::ParamSpec;
+use crate::microfacet::albedo::Losses;
+use crate::microfacet::{Distribution, Facets};
 use kirkas_scene::spec::UNIT;
+use kirkas_scene::{ParamSpec, Params};
 
 /// Row `roughness`.
 pub(super) const ROUGHNESS: ParamSpec =
@@ -21,9 +22,41 @@ pub(super) const ANISOTROPY: ParamSpec = ParamSpec::number_texture(
     (-1.0, 1.0),
     "above 0 rougher along the texture's u and smoother across, below 0 the other way round",
 );
+/// Row `distribution`.
+pub(super) const DISTRIBUTION: ParamSpec =
+    ParamSpec::choice("distribution", &["ggx", "beckmann"], "slopes with long tails, or Gaussian ones");
+/// Row `compensation`.
+pub(super) const COMPENSATION: ParamSpec =
+    ParamSpec::bool("compensation", false, "gives back the light that bounces among the facets");
 
-/// `(alpha_u, alpha_v)`, neither below [`LEAST_ALPHA`].
+/// `(alpha_u, alpha_v)`.
 pub(super) fn alphas(roughness: Light, anisotropy: Light) -> (f32, f32) {
     let (r, a) = (roughness[0], anisotropy[0]);
-    ((r * (1.0 + a)).max(LEAST_ALPHA), (r * (1.0 - a)).max(LEAST_ALPHA))
+    (r * (1.0 + a), r * (1.0 - a))
+}
+
+/// What is fixed about facets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kind {
+    distribution: Distribution,
+    compensates: bool,
+}
+
+impl Kind {
+    pub(super) fn read(params: &Params) -> Self {
+        let distribution =
+            if params.text("distribution") == Some("beckmann") { Distribution::Beckmann } else { Distribution::Ggx };
+        let compensates =
+            params.spec().params.iter().any(|row| row.name == "compensation") && params.bool("compensation");
+        Kind { distribution, compensates }
+    }
+
+    pub(super) fn facets(&self, roughness: Light, anisotropy: Light) -> Facets {
+        Facets::new(self.distribution, alphas(roughness, anisotropy))
+    }
+
+    /// What they lose, if it is to be given back.
+    pub(super) fn losses(&self, facets: &Facets) -> Option<Losses> {
+        self.compensates.then(|| Losses::new(facets))
+    }
 }

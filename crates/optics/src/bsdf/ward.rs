@@ -44,6 +44,7 @@ use super::opaque::{Opaque, Reflector};
 use super::roughness::{ANISOTROPY, alphas};
 use super::{Interface, Mode, Prepare, roughness, slot};
 use crate::fresnel::reflect;
+use crate::microfacet::LEAST_ALPHA;
 use crate::{Lanes, Light, Palette};
 use core::f32::consts::PI;
 use kirkas_geometry::Vec3;
@@ -99,7 +100,10 @@ impl Prepare for Prepared {
         Opaque(Slopes {
             diffuse: slots[DIFFUSE],
             specular: slots[SPECULAR],
-            alpha: alphas(slots[ROUGHNESS], slots[STRETCH]),
+            alpha: {
+                let (u, v) = alphas(slots[ROUGHNESS], slots[STRETCH]);
+                (u.max(LEAST_ALPHA), v.max(LEAST_ALPHA))
+            },
             is_classic: self.is_classic,
         })
     }

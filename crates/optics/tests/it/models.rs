@@ -31,7 +31,8 @@ pub fn parse(pairs: &[(&str, Value)]) -> Map {
     pairs.iter().fold(Map::default(), |m, (n, v)| m.with(n, v.clone()))
 }
 
-/// A parameter set in short: `name=value` words, colours as `r,g,b`, and `outside`, the index above.
+/// A parameter set in short: `name=value` words, colours as `r,g,b`, `@gold` for a metal's constants, and
+/// `outside`, the index above.
 pub fn set(words: &str) -> (Map, f32) {
     let mut outside = 1.0;
     let mut map = Map::default();
@@ -39,6 +40,7 @@ pub fn set(words: &str) -> (Map, f32) {
         let (name, text) = word.split_once('=').expect("name=value");
         let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.parse().ok()).collect();
         let value = match (text, numbers) {
+            _ if text.starts_with('@') => Value::from(Map::default().with("material", &text[1..])),
             ("true" | "false", _) => Value::from(text == "true"),
             (_, None) => Value::from(text),
             (_, Some(one)) if one.len() == 1 => Value::Float(one[0]),
@@ -109,88 +111,58 @@ pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map
 
 /// At least three sets for each type; a listed model without them fails.
 pub fn parameter_sets(type_name: &str) -> Vec<(Map, f32)> {
-    let n = |name, v: f64| (name, Value::Float(v));
-    let c = |name, v: [f64; 3]| (name, Value::from(v));
-    let t = |name, v: &str| (name, Value::from(v));
-    let sets = match type_name {
-        "lambert" => {
-            vec![(vec![], 1.0), (vec![c("reflectance", [0.9, 0.2, 0.05])], 1.0), (vec![n("reflectance", 1.0)], 1.33)]
-        }
-        "phong" | "blinn_phong" => vec![
-            (vec![c("diffuse", [0.5, 0.4, 0.1]), n("specular", 0.3), n("exponent", 20.0)], 1.0),
-            (vec![n("diffuse", 0.0), c("specular", [0.9, 0.7, 0.1]), n("exponent", 200.0)], 1.0),
-            (vec![n("diffuse", 0.0), n("specular", 1.0), n("exponent", 0.0)], 1.0),
-            (vec![n("diffuse", 0.0), n("specular", 1.0), n("exponent", 1.5)], 1.0),
-            (vec![n("diffuse", 0.4), n("specular", 0.5), n("exponent", 8.0), t("form", "classic")], 1.0),
-            (
-                vec![n("diffuse", 0.2), n("specular", 0.1), n("exponent", 5.0), n("reflect", 0.3), n("transmit", 0.4)],
-                1.2,
-            ),
-            (
-                vec![
-                    n("diffuse", 0.1),
-                    n("specular", 0.1),
-                    n("reflect", 0.5),
-                    n("transmit", 0.8),
-                    t("fresnel", "exact"),
-                ],
-                1.0,
-            ),
-            (
-                vec![n("diffuse", 0.1), n("specular", 0.1), n("reflect", 0.5), n("ior", 2.0), t("fresnel", "schlick")],
-                1.0,
-            ),
-        ],
-        "mirror" => vec![
-            (vec![], 1.0),
-            (vec![c("reflectance", [0.9, 0.2, 0.05])], 1.0),
-            (vec![c("reflectance", [0.9, 0.2, 0.0]), t("fresnel", "schlick")], 1.0),
-        ],
-        "dielectric" => vec![
-            (vec![], 1.0),
-            (vec![n("ior", 1.1), t("fresnel", "schlick"), c("transmittance", [0.3, 0.2, 0.9])], 1.33),
-            (vec![n("ior", 2.4), n("reflectance", 0.5)], 1.0),
-            (vec![n("reflectance", 0.25), n("transmittance", 0.5), t("fresnel", "constant")], 1.0),
-        ],
-        "rough_mirror" => vec![
-            (vec![n("reflectance", 1.0), n("roughness", 0.5)], 1.0),
-            (vec![c("reflectance", [0.9, 0.2, 0.0]), n("roughness", 0.15), t("fresnel", "schlick")], 1.0),
-            (vec![n("roughness", 1.0)], 1.0),
-        ],
-        "rough_dielectric" => vec![
-            (vec![n("roughness", 0.3)], 1.0),
-            (
-                vec![n("ior", 1.1), n("roughness", 0.5), t("fresnel", "schlick"), c("transmittance", [0.3, 0.2, 0.9])],
-                1.33,
-            ),
-            (vec![n("ior", 2.4), n("roughness", 0.15), n("reflectance", 0.5)], 1.0),
-            (vec![n("reflectance", 0.25), n("transmittance", 0.5), n("roughness", 0.8), t("fresnel", "constant")], 1.0),
-        ],
-        "conductor" => vec![
-            (vec![n("ior", 0.2), c("k", [3.5, 2.5, 1.9])], 1.0),
-            (vec![n("ior", 1.5), n("k", 4.0), n("reflectance", 0.5)], 1.33),
-            (vec![("ior", Value::from(Map::default().with("material", "gold")))], 1.0),
-        ],
-        "rough_conductor" => vec![
-            (vec![n("ior", 0.2), c("k", [3.5, 2.5, 1.9]), n("roughness", 0.5)], 1.0),
-            (vec![n("ior", 1.5), n("k", 4.0), n("roughness", 0.15)], 1.33),
-            (vec![("ior", Value::from(Map::default().with("material", "copper"))), n("roughness", 1.0)], 1.0),
-        ],
-        "emitter" => vec![
-            (vec![], 1.0),
-            (vec![n("intensity", 5.0), c("reflectance", [0.2, 0.5, 0.9])], 1.0),
-            (vec![c("radiance", [1.0, 2.0, 3.0]), t("unit", "nit")], 1.0),
-        ],
-        "measured" => samples::LISTED.iter().map(|file| (vec![t("file", file)], 1.0)).collect(),
-        "hull" => vec![(vec![], 1.0), (vec![], 1.33), (vec![("priority", Value::Int(3))], 1.0)],
-        other => return short_sets(other).iter().map(|words| set(words)).collect(),
-    };
-    sets.into_iter().map(|(pairs, outside)| (parse(&pairs), outside)).collect()
+    if type_name == "measured" {
+        return samples::LISTED.iter().map(|file| (parse(&[("file", Value::from(*file))]), 1.0)).collect();
+    }
+    short_sets(type_name).iter().map(|words| set(words)).collect()
 }
 
-/// The same in short.
 fn short_sets(type_name: &str) -> &'static [&'static str] {
     match type_name {
+        "lambert" => &["", "reflectance=0.9,0.2,0.05", "reflectance=1 outside=1.33"],
+        "phong" | "blinn_phong" => &[
+            "diffuse=0.5,0.4,0.1 specular=0.3 exponent=20",
+            "diffuse=0 specular=0.9,0.7,0.1 exponent=200",
+            "diffuse=0 specular=1 exponent=0",
+            "diffuse=0 specular=1 exponent=1.5",
+            "diffuse=0.4 specular=0.5 exponent=8 form=classic",
+            "diffuse=0.2 specular=0.1 exponent=5 reflect=0.3 transmit=0.4 outside=1.2",
+            "diffuse=0.1 specular=0.1 reflect=0.5 transmit=0.8 fresnel=exact",
+            "diffuse=0.1 specular=0.1 reflect=0.5 ior=2 fresnel=schlick",
+        ],
+        "mirror" => &["", "reflectance=0.9,0.2,0.05", "reflectance=0.9,0.2,0 fresnel=schlick"],
+        "dielectric" => &[
+            "",
+            "ior=1.1 fresnel=schlick transmittance=0.3,0.2,0.9 outside=1.33",
+            "ior=2.4 reflectance=0.5",
+            "reflectance=0.25 transmittance=0.5 fresnel=constant",
+        ],
+        "rough_mirror" => &[
+            "reflectance=1 roughness=0.5",
+            "reflectance=0.9,0.2,0 roughness=0.15 fresnel=schlick",
+            "roughness=1",
+            "roughness=0.4 anisotropy=0.6 compensation=true",
+            "roughness=0.3 anisotropy=-0.5 distribution=beckmann fresnel=schlick reflectance=0.5",
+            "roughness=0.8 distribution=beckmann compensation=true",
+        ],
+        "rough_dielectric" => &[
+            "roughness=0.3",
+            "ior=1.1 roughness=0.5 fresnel=schlick transmittance=0.3,0.2,0.9 outside=1.33",
+            "ior=2.4 roughness=0.15 reflectance=0.5",
+            "reflectance=0.25 transmittance=0.5 roughness=0.8 fresnel=constant",
+            "roughness=0.4 anisotropy=0.5 distribution=beckmann",
+            "roughness=0.3 anisotropy=-0.7",
+        ],
+        "conductor" => &["ior=0.2 k=3.5,2.5,1.9", "ior=1.5 k=4 reflectance=0.5 outside=1.33", "ior=@gold"],
+        "rough_conductor" => &[
+            "ior=0.2 k=3.5,2.5,1.9 roughness=0.5",
+            "ior=1.5 k=4 roughness=0.15 outside=1.33",
+            "ior=@copper roughness=1",
+            "ior=0.2 k=3 roughness=0.6 anisotropy=-0.5 distribution=beckmann",
+            "ior=0.2 k=3.5,2.5,1.9 roughness=0.5 compensation=true",
+        ],
+        "emitter" => &["", "intensity=5 reflectance=0.2,0.5,0.9", "radiance=1,2,3 unit=nit"],
+        "hull" => &["", "outside=1.33", "priority=3"],
         "oren_nayar" => &[
             "",
             "reflectance=1 roughness=1",
@@ -258,7 +230,18 @@ fn the_list_holds_each_model_once_with_its_rows() {
         rows("dielectric"),
         ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "interior"]
     );
-    let rough = ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "roughness", "interior"];
+    let rough = [
+        "ior",
+        "fresnel",
+        "reflectance",
+        "transmittance",
+        "absorption",
+        "priority",
+        "roughness",
+        "anisotropy",
+        "distribution",
+        "interior",
+    ];
     assert_eq!(rows("rough_dielectric"), rough);
     let textured: Vec<&str> = texture_rows(spec("phong")).map(|r| r.name).collect();
     assert_eq!(textured, ["diffuse", "specular", "exponent", "ambient", "reflect", "transmit"]);

@@ -13,7 +13,7 @@ import numpy as np
 from common import Set, parse, unit
 
 HERE = pathlib.Path(__file__).parent
-SHARED = ("common", "make", "microfacets")
+SHARED = ("common", "make", "microfacets", "facet_losses")
 
 
 def make_pairs():

@@ -9,6 +9,7 @@ SETS = [
     "ior=0.2 k=3.5,2.5,1.9 roughness=0.5",
     "ior=1.5 k=4 roughness=0.15 outside=1.33",
     "ior=2.5 k=0.5 reflectance=0.5,0.6,0.7 roughness=1",
+    "ior=0.2 k=3 roughness=0.6 anisotropy=-0.5 distribution=beckmann",
 ]
 
 

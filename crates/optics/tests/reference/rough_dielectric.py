@@ -11,6 +11,7 @@ SETS = [
     "ior=1.1 roughness=0.5 fresnel=schlick transmittance=0.3,0.2,0.9 outside=1.33",
     "ior=2.4 roughness=0.15 reflectance=0.5",
     "reflectance=0.25 transmittance=0.5 roughness=0.8 fresnel=constant",
+    "roughness=0.4 anisotropy=0.5 distribution=beckmann",
 ]
 
 

@@ -9,6 +9,8 @@ SETS = [
     "reflectance=1 roughness=0.5",
     "reflectance=0.9,0.2,0 roughness=0.15 fresnel=schlick",
     "roughness=1",
+    "roughness=0.5 anisotropy=0.7",
+    "roughness=0.3 distribution=beckmann fresnel=schlick reflectance=0.2,0.5,0.9",
 ]
 
 
