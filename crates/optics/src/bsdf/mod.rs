@@ -35,12 +35,16 @@ pub mod measured;
 pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
+pub mod plastic;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
+pub mod thin_dielectric;
+pub mod velvet;
 pub mod ward;
 
 mod boundary;
+mod coat;
 mod conductor_body;
 mod lobes;
 mod mirror_body;
@@ -69,6 +73,9 @@ models! {
     ashikhmin_shirley AshikhminShirley,
     lafortune Lafortune,
     ward Ward,
+    plastic Plastic,
+    thin_dielectric ThinDielectric,
+    velvet Velvet,
 }
 
 /// What travels along `wo`.

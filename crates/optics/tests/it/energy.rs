@@ -157,6 +157,34 @@ fn compensated_facets_stand_a_white_furnace() {
     near(scattered(&with("roughness=0.5 compensation=true"), Vec3::Z, 0, Mode::Radiance), 1.0, 5e-3);
 }
 
+/// Nothing is lost between the coat of white plastic and its base, and panes pass what the echoes of both polarisations leave.
+#[test]
+fn coats_and_panes_keep_their_light() {
+    let with = |name: &str, words: &str| {
+        let (params, outside) = set(words);
+        build(name, &params, outside)
+    };
+    for wo in kirkas_testkit::furnace::directions_above(5, 0.05) {
+        for words in ["reflectance=1", "reflectance=1 ior=2.2", "reflectance=1 ior=1.3 outside=1.5"] {
+            let white = with("plastic", words);
+            near(scattered(&white, wo, 0, Mode::Radiance) + deltas(&white, wo, 0, Mode::Radiance), 1.0, 2e-4);
+        }
+        near(deltas(&with("thin_dielectric", ""), wo, 0, Mode::Radiance), 1.0, 1e-6);
+    }
+    // analytic.json: "Incoherent slab n=1.5" straight on and at 60 degrees.
+    let pane = with("thin_dielectric", "");
+    let passed = |wo: Vec3| {
+        pane.bsdf
+            .delta_branches(wo, Mode::Radiance)
+            .iter()
+            .filter(|s| s.lobe.is_transmission())
+            .map(|s| s.f[0])
+            .sum::<f32>()
+    };
+    near(passed(Vec3::Z), 0.923076923077, 1e-6);
+    near(passed(Vec3::new(0.75_f32.sqrt(), 0.0, 0.5)), 0.8481284097288, 1e-6);
+}
+
 /// Nearly smooth rough glass loses nearly nothing, from both sides, even where it reflects totally.
 #[test]
 fn rough_glass_tends_to_smooth_glass() {

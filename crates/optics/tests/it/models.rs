@@ -190,6 +190,18 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "diffuse=0 specular=1 roughness=0.4 anisotropy=0.6",
             "diffuse=0.2 specular=0.3 roughness=0.5 anisotropy=-0.5 form=classic",
         ],
+        "plastic" => &[
+            "reflectance=0.6,0.3,0.1",
+            "reflectance=1",
+            "reflectance=0.9,0.5,0.2 ior=1.9 outside=1.33",
+            "reflectance=0.6,0.3,0.1 specular=0.5 ior=1.3 saturates=false outside=1.5",
+        ],
+        "thin_dielectric" => &["", "ior=2.4 transmittance=0.5,0.9,0.2", "ior=1.33 outside=1.5 reflectance=0.5"],
+        "velvet" => &[
+            "diffuse=0.1,0.2,0.3 sheen=0.5,0.4,0.6 roughness=0.3",
+            "diffuse=0 sheen=1 roughness=0.1",
+            "diffuse=0.2 sheen=0.7 roughness=1",
+        ],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }
