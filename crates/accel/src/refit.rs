@@ -52,8 +52,8 @@ impl Accel {
     /// Fit the structure to a scene of the same topology (the same primitives over the same indices, instances of the same
     /// aggregates) whose vertices, balls, places, keys or shutter are others: in a fraction of the time of a build, and with the
     /// answers of one. The further things move against each other, the slower rays become, until it is built anew. The boxes of
-    /// triangles that `bvh8_best` has in several leaves, in parts, become those of whole triangles. After an error all is as
-    /// before.
+    /// triangles that `bvh8` and `bvh8_best` have in several leaves, in parts, become those of whole triangles. After an error all is
+    /// as before.
     ///
     /// ```
     /// # use kirkas_accel::*;

@@ -53,6 +53,9 @@ impl<'a, const ANY: bool> Search<'a, ANY> {
     /// Consider a crossing. True when the farther crossings of the same primitive need not be looked at.
     #[inline]
     pub fn offer(&mut self, level: Level, geometry: u32, primitive: u32, (t, u, v): (f32, f32, f32)) -> bool {
+        if t > self.limit {
+            return true;
+        }
         let hit = Hit { t, u, v, instance: level.instance, geometry, primitive };
         if self.best.is_some_and(|best| !hit.beats(&best)) {
             return true;

@@ -10,18 +10,16 @@ use kirkas_geometry::{Bounds3, DVec3, Vec3};
 /// A triangle cut by the 6 faces of a box and a plane has 10 corners at most; the rest is for roundings.
 const MAX_CORNERS: usize = 16;
 
+/// A part of a triangle.
 #[derive(Clone, Copy)]
-struct Polygon {
+pub(super) struct Polygon {
     corners: [DVec3; MAX_CORNERS],
     len: usize,
 }
 
 /// What of a triangle lies within `around` and below, and above, `plane` of the axis.
 pub(crate) fn split(corners: &Corners, around: &Bounds3, axis: usize, plane: f32) -> [Bounds3; 2] {
-    let mut whole = Polygon { corners: [DVec3::ZERO; MAX_CORNERS], len: 3 };
-    for (own, c) in whole.corners.iter_mut().zip(corners) {
-        *own = Vec3::from_array(*c).as_dvec3();
-    }
+    let mut whole = Polygon::new(corners);
     for k in 0..3 {
         whole = whole.cut(k, around.min[k], false);
         whole = whole.cut(k, around.max[k], true);
@@ -45,8 +43,21 @@ pub(crate) fn split(corners: &Corners, around: &Bounds3, axis: usize, plane: f32
 }
 
 impl Polygon {
+    pub fn new(corners: &Corners) -> Self {
+        let mut whole = Polygon { corners: [DVec3::ZERO; MAX_CORNERS], len: 3 };
+        for (own, c) in whole.corners.iter_mut().zip(corners) {
+            *own = Vec3::from_array(*c).as_dvec3();
+        }
+        whole
+    }
+
+    /// True when another cut leaves room for its corners.
+    pub fn can_be_cut(&self) -> bool {
+        self.len + 2 <= MAX_CORNERS
+    }
+
     /// What lies at the plane and to one side of it.
-    fn cut(&self, axis: usize, plane: f32, below: bool) -> Polygon {
+    pub fn cut(&self, axis: usize, plane: f32, below: bool) -> Polygon {
         let plane = f64::from(plane);
         let is_in = |p: &DVec3| if below { p[axis] <= plane } else { p[axis] >= plane };
         let own = &self.corners[..self.len];
@@ -78,7 +89,7 @@ impl Polygon {
     }
 
     /// Grown, and by the rounding to f32 and of the growth itself.
-    fn bounds(&self, growth: f32) -> Bounds3 {
+    pub fn bounds(&self, growth: f32) -> Bounds3 {
         let mut b = Bounds3::EMPTY;
         for p in &self.corners[..self.len] {
             b.min = b.min.min(p.as_vec3());

@@ -12,6 +12,7 @@ pub(crate) mod morton;
 pub(crate) mod parallel;
 mod partition;
 mod pieces;
+pub(crate) mod presplit;
 pub(crate) mod pure_leaves;
 pub(crate) mod reference;
 pub(crate) mod reinsertion;

@@ -6,6 +6,8 @@
 mod arena;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_crossings;
 mod backend;
 mod box_ray;
 mod closest;
@@ -28,7 +30,7 @@ use crate::build::binary::MAX_DEPTH;
 use crate::build::costs::Costs;
 use crate::build::reference::Reference;
 use crate::build::reinsertion::{self, Effort};
-use crate::build::{binned_sah, morton, pure_leaves, spatial_split};
+use crate::build::{binned_sah, morton, presplit, pure_leaves, spatial_split};
 use crate::gather::{Gathered, gather};
 use crate::instance::PlacedInstance;
 use crate::primitive;
@@ -94,7 +96,19 @@ impl Tree {
                 _ => None,
             }
         };
+        // Long triangles first.
+        let room = match quality {
+            Quality::Best => 0.8,
+            Quality::Default => 0.45,
+            Quality::Fast | Quality::Compact => 0.0,
+        };
+        let room = (count as f32 * room) as usize;
+        let parts = if room > 0 { presplit::presplit(&mut references, &corners, room) } else { 0 };
         let binary = match quality {
+            // Where many were long, further cuts take long to find and gain nothing.
+            Quality::Best if 4 * parts > room => {
+                reinsertion::improve(binned_sah::build(references, &costs, executor), Effort::BEST, executor)
+            }
             Quality::Fast => morton::build(references, executor),
             Quality::Default | Quality::Compact => binned_sah::build(references, &costs, executor),
             Quality::Best => {

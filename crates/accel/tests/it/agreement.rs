@@ -1,6 +1,6 @@
 //! The tree against brute force on large random scenes of everything.
 
-use crate::common::{Boxes, Plane, Random, assert_agreement, geometry, triangles};
+use crate::common::{Boxes, Plane, Random, assert_agreement, build, geometry, triangles, world};
 use kirkas_accel::*;
 use kirkas_geometry::transform::rotation;
 use kirkas_geometry::{AnimatedTransform, Bounds3, DAffine3, DMat3, Ray, Vec3};
@@ -212,4 +212,36 @@ fn hits_have_the_same_bits_everywhere() {
         }
     }
     assert_eq!(format!("{hash:016x}"), "b995c732affcaec6");
+}
+
+/// Long thin diagonals among small triangles: what the builders cut into parts.
+#[test]
+fn triangles_in_parts_are_hit_like_whole_ones() {
+    let r = &mut Random::new(77);
+    let mut corners = Vec::new();
+    for _ in 0..150 {
+        let (middle, along) = (r.cube(), r.cube());
+        let across = along.any_orthogonal_vector() * 0.002;
+        corners.push([middle - along, middle + along, middle - along + across]);
+    }
+    for _ in 0..4000 {
+        let (p, a, b) = (r.cube(), r.cube(), r.cube());
+        corners.push([p, p + a * 0.01, p + b * 0.01]);
+    }
+    let scene = world(vec![triangles(&corners)]);
+    let whole = build(AccelKind::Bvh8Fast, &scene).statistics().bytes;
+    let parts = [AccelKind::Bvh8, AccelKind::Bvh8Best].map(|kind| build(kind, &scene).statistics().bytes);
+    assert!(parts.iter().all(|bytes| bytes * 20 > whole * 21), "{parts:?} where whole triangles take {whole}");
+    let rays: Vec<Ray> = (0..4000)
+        .map(|i| {
+            // Half of them at an edge of a long one.
+            let [a, b, c] = corners[r.below(150) as usize];
+            let (u, v) = (r.unit(), r.unit() * if i % 4 == 0 { 1e-6 } else { 1.0 });
+            let origin = r.cube() * 2.0;
+            let target = if i % 2 == 0 { a + (b - a) * u + (c - a) * (v * (1.0 - u)) } else { r.cube() };
+            Ray::new(origin, target - origin)
+        })
+        .collect();
+    let hits = assert_agreement(&scene, &rays);
+    assert!(hits > 2000, "{hits}");
 }
