@@ -38,6 +38,11 @@ impl Coat {
         Coat { outside, ior, escape: ((1.0 - diffuse_reflectance(n)) / (n * n)) as f32 }
     }
 
+    /// The same, letting out this much of diffuse light from below.
+    pub(super) fn letting_out(self, escape: f32) -> Self {
+        Coat { escape, ..self }
+    }
+
     /// The same under another medium.
     pub(super) fn under(self, outside: f32) -> Self {
         if outside == self.outside { self } else { Coat::new(outside, self.ior) }

@@ -39,6 +39,7 @@ pub mod plastic;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
+pub mod rough_plastic;
 pub mod thin_dielectric;
 pub mod velvet;
 pub mod ward;
@@ -50,6 +51,7 @@ mod lobes;
 mod mirror_body;
 mod opaque;
 mod phong_body;
+mod rough_coat;
 mod roughness;
 
 pub use boundary::Interface;
@@ -74,6 +76,7 @@ models! {
     lafortune Lafortune,
     ward Ward,
     plastic Plastic,
+    rough_plastic RoughPlastic,
     thin_dielectric ThinDielectric,
     velvet Velvet,
 }

@@ -51,6 +51,10 @@ impl Kind {
         Kind { distribution, compensates }
     }
 
+    pub(super) fn distribution(&self) -> Distribution {
+        self.distribution
+    }
+
     pub(super) fn facets(&self, roughness: Light, anisotropy: Light) -> Facets {
         Facets::new(self.distribution, alphas(roughness, anisotropy))
     }

@@ -196,6 +196,12 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "reflectance=0.9,0.5,0.2 ior=1.9 outside=1.33",
             "reflectance=0.6,0.3,0.1 specular=0.5 ior=1.3 saturates=false outside=1.5",
         ],
+        "rough_plastic" => &[
+            "reflectance=0.6,0.3,0.1 roughness=0.3",
+            "reflectance=1 roughness=0.6 anisotropy=0.5",
+            "reflectance=0.9,0.5,0.2 ior=1.9 roughness=0.1 specular=0.5,0.6,0.7 outside=1.33",
+            "reflectance=0.6,0.3,0.1 roughness=0.7 ior=1.3 saturates=false distribution=beckmann",
+        ],
         "thin_dielectric" => &["", "ior=2.4 transmittance=0.5,0.9,0.2", "ior=1.33 outside=1.5 reflectance=0.5"],
         "velvet" => &[
             "diffuse=0.1,0.2,0.3 sheen=0.5,0.4,0.6 roughness=0.3",
