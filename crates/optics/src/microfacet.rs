@@ -10,6 +10,7 @@
 
 pub mod albedo;
 mod losses;
+pub mod tabulated;
 
 use core::f32::consts::PI;
 use kirkas_geometry::Vec3;

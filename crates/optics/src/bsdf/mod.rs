@@ -32,6 +32,7 @@ pub mod hull;
 pub mod lafortune;
 pub mod lambert;
 pub mod measured;
+pub mod microfacet_table;
 pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
@@ -79,6 +80,7 @@ models! {
     rough_plastic RoughPlastic,
     thin_dielectric ThinDielectric,
     velvet Velvet,
+    microfacet_table MicrofacetTable,
 }
 
 /// What travels along `wo`.

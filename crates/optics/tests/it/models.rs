@@ -203,6 +203,13 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "reflectance=0.6,0.3,0.1 roughness=0.7 ior=1.3 saturates=false distribution=beckmann",
         ],
         "thin_dielectric" => &["", "ior=2.4 transmittance=0.5,0.9,0.2", "ior=1.33 outside=1.5 reflectance=0.5"],
+        "microfacet_table" => &[
+            "diffuse=0.1,0.2,0.3 reflectance=0.5,0.6,0.3 spread=0.4",
+            "shape=ring angle=0.5 spread=0.2 reflectance=1 fresnel=constant",
+            "shape=grooves angle=0.6 spread=0.3 reflectance=0.5,0.6,0.7",
+            "shape=cross spread=0.5",
+            "shape=table columns=4 table=1,1,1,1,3,0.5,3,0.5,0.1,2,0.1,2,0.2,0.2,0.2,0.2,0,0,0,0.1",
+        ],
         "velvet" => &[
             "diffuse=0.1,0.2,0.3 sheen=0.5,0.4,0.6 roughness=0.3",
             "diffuse=0 sheen=1 roughness=0.1",
