@@ -110,10 +110,10 @@ impl Reader<'_> {
             return;
         }
         let read = self.bytes(node, path).and_then(|b| {
-            MeasuredData::read(&b).map_err(|e| {
+            MeasuredData::read(&b, self.palette.mode()).map_err(|e| {
                 Diagnostic::error("bad-measured", format!("`{path}` cannot be read: {e}"))
                     .at(node.span, "this file")
-                    .help("measured materials come as MERL `.binary`")
+                    .help("measured materials come as MERL `.binary` or RGL `.bsdf`")
             })
         });
         match read {

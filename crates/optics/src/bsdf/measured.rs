@@ -1,13 +1,13 @@
 //! # measured
 //!
-//! A real material as an instrument saw it: a file of the MERL database. `f` is what the file says,
+//! A real material as an instrument saw it: a file of the MERL or of the RGL database. `f` is what the file says,
 //! interpolated between its measurements.
 //!
 //! ## Parameters
 //!
 //! | name | type | unit | default | meaning |
 //! |---|---|---|---|---|
-//! | `file` | path | | required | a MERL `.binary`; what it is shows in its first bytes |
+//! | `file` | path | | required | a MERL `.binary` or an RGL `.bsdf`; which of them, its first bytes tell |
 //!
 //! ## Example
 //!
@@ -20,14 +20,17 @@
 //! ## Limits
 //!
 //! As good as the instrument: towards grazing (above about 80 degrees) measurements are noisy, extrapolated or missing, and
-//! nothing keeps them from reflecting more than they get. MERL materials are isotropic and RGB (in spectral renders they get
-//! the smooth spectra of all colours). A file is one material: it takes no textures and no tint. Looks the same from both
-//! sides.
+//! nothing keeps them from reflecting more than they get. MERL materials are isotropic and RGB, RGL ones isotropic or not, RGB or
+//! spectral; in spectral renders RGB files get the smooth spectra of all colours, in RGB renders spectral ones their colour
+//! under D65. RGL files are reciprocal up to the noise of their measurements only; light that is traced from the lamps sees the
+//! same value as light that is traced from the camera. A file is one material: it takes no textures and no tint. Anisotropic
+//! ones lie along the surface's `u`. Looks the same from both sides.
 //!
 //! ## References
 //!
-//! W. Matusik, H. Pfister, M. Brand, L. McMillan, "A Data-Driven Reflectance Model", SIGGRAPH 2003. The tables and how
-//! directions are drawn: `measured::merl`.
+//! W. Matusik, H. Pfister, M. Brand, L. McMillan, "A Data-Driven Reflectance Model", SIGGRAPH 2003. J. Dupuy, W. Jakob, "An Adaptive
+//! Parameterization for Efficient Material Acquisition and Rendering", TOG 37(6), 2018. The tables and how directions are
+//! drawn: `measured::merl`, `measured::rgl`.
 
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter};
 use crate::measured::MeasuredData;
@@ -41,7 +44,7 @@ pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "measured",
     doc: "A real material, from a file of measurements.",
-    params: &[ParamSpec::new("file", ParamType::Path, Fallback::Required, "a MERL `.binary`")],
+    params: &[ParamSpec::new("file", ParamType::Path, Fallback::Required, "a MERL `.binary` or an RGL `.bsdf`")],
 };
 const LOBE: Lobe = Lobe::GlossyReflection;
 

@@ -26,6 +26,8 @@ pub const PHI_D: usize = 180;
 pub const CELLS: usize = THETA_H * THETA_D * PHI_D;
 /// Length of a file.
 pub const FILE_BYTES: usize = 12 + 3 * 8 * CELLS;
+/// What a file begins with.
+pub const HEADER: [u8; 12] = [90, 0, 0, 0, 90, 0, 0, 0, 180, 0, 0, 0];
 /// What stored red, green and blue are multiplied by.
 pub const SCALES: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 

@@ -13,6 +13,7 @@ mod microfacet;
 mod models;
 mod phase;
 mod reference;
+mod rgl;
 mod samples;
 mod spectrum;
 mod values;

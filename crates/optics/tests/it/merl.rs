@@ -9,7 +9,7 @@ use kirkas_optics::measured::fits::{Abc, Sgd};
 use kirkas_optics::measured::half::HalfAngles;
 use kirkas_optics::measured::merl::{MerlTable, SCALES, index, theta_h_at};
 use kirkas_optics::measured::{MeasuredData, write_merl};
-use kirkas_optics::{Lanes, LobeSet, Mode, Palette};
+use kirkas_optics::{ColorMode, Lanes, LobeSet, Mode, Palette};
 use kirkas_scene::{Span, Value};
 use kirkas_testkit::{Estimate, Random};
 use std::f64::consts::PI;
@@ -137,8 +137,8 @@ fn values_between_cells_lie_on_straight_lines() {
 /// The file of a smooth model is the model, between its cells too; the plain cell is what interpolation is the better of.
 #[test]
 fn a_written_model_is_read_back() {
-    let table = data("paint.binary");
-    let MeasuredData::Merl(table) = &*table;
+    let table = data("paint.binary", ColorMode::Rgb);
+    let MeasuredData::Merl(table) = &*table else { panic!("a MERL file") };
     let mut random = Random::new(3);
     let (mut worst, mut plain) = (0.0_f64, 0.0_f64);
     for _ in 0..20_000 {
@@ -252,7 +252,7 @@ fn sampling_by_the_table_beats_the_cosine() {
 }
 
 /// Of the estimate of what a furnace shows, all channels together: by the model's sampling and by the cosine's.
-fn variances(bsdf: &kirkas_optics::Bsdf, wo: Vec3) -> (f64, f64) {
+pub fn variances(bsdf: &kirkas_optics::Bsdf, wo: Vec3) -> (f64, f64) {
     const SAMPLES: usize = 100_000;
     let mut random = Random::new(5);
     let own = Estimate::of((0..SAMPLES).map(|_| {
@@ -278,7 +278,7 @@ fn real_gloss_is_sampled_at_least_five_times_better_than_by_the_cosine() {
             [("SGD", write_merl(|wo, wi| sgd.value(wo, wi))), ("ABC", write_merl(|wo, wi| abc.value(wo, wi)))]
         {
             let mut palette = Palette::RGB;
-            palette.add_measured(Span::NONE, name, Arc::new(MeasuredData::read(&bytes).unwrap()));
+            palette.add_measured(Span::NONE, name, Arc::new(MeasuredData::read(&bytes, ColorMode::Rgb).unwrap()));
             let bsdf = build_with(&palette, Lanes::RGB, "measured", &parse(&[("file", Value::from(name))]), 1.0).bsdf;
             for wo in [Vec3::new(0.1, 0.0, 0.99498744), Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.3, 0.9, 0.3162278)] {
                 let (own, cosine) = variances(&bsdf, wo);

@@ -100,7 +100,9 @@ pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map
     let label = format!("{type_name} {:?}", entity.params.iter().map(|(n, v)| (&n.text, &v.value)).collect::<Vec<_>>());
     Case {
         label,
-        is_reciprocal: !(classic && type_name.contains("phong")),
+        // Measurements by slices of one direction are reciprocal up to their noise only.
+        is_reciprocal: !(classic && type_name.contains("phong"))
+            && !written("file").is_some_and(|f| f.ends_with(".bsdf")),
         is_bounded: !classic,
         scales_radiance: !(is_constant && model.medium().is_some()),
         model,

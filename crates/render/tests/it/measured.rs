@@ -46,6 +46,7 @@ fn what_is_wrong_with_a_file_is_told_at_its_name() {
         format!("{} {}", errors[0].code, errors[0].message)
     };
     assert!(told("none.binary").contains("there is no file `none.binary`"));
-    assert!(told("picture.binary").contains("bad-measured `picture.binary` cannot be read: it is no"));
+    let neither = "bad-measured `picture.binary` cannot be read: it is neither a MERL `.binary` nor an RGL `.bsdf`";
+    assert_eq!(told("picture.binary"), neither);
     assert!(told("short.binary").contains("a MERL file has 34992012 bytes, this one 13"));
 }
