@@ -12,7 +12,10 @@ pub const MESH_EXTENSIONS: [&str; 2] = ["obj", "ply"];
 
 /// Meshes already read, by path from the root folder, and what their readers passed over.
 #[derive(Debug, Default)]
-pub struct MeshCache(Mutex<BTreeMap<String, (Arc<MeshData>, Vec<Diagnostic>)>>);
+pub struct MeshCache(Mutex<BTreeMap<String, ReadMesh>>);
+
+/// A mesh and what its reader passed over.
+type ReadMesh = (Arc<MeshData>, Vec<Diagnostic>);
 
 impl MeshCache {
     /// The mesh `path`, relative to `folder`; read now unless it was read before.

@@ -147,7 +147,7 @@ fn polar(m: DMat3) -> (DQuat, DMat3) {
         }
     }
     if r.determinant() < 0.0 {
-        r = r * -1.0;
+        r *= -1.0;
     }
     (DQuat::from_mat3(&r), r.transpose() * m)
 }

@@ -398,19 +398,19 @@ fn compile(
                 .help("add `[lights.NAME]`, an object with an `emitter` material, or a `[background]` with a colour"),
         );
     }
-    if open == close && time.is_none() {
-        if let Some(moving) =
+    if open == close
+        && time.is_none()
+        && let Some(moving) =
             d.all(Kind::Object).iter().chain(d.all(Kind::Camera)).find(|e| e.params.get("motion").is_some())
-        {
-            warnings.push(
-                Diagnostic::warning(
-                    "no-shutter",
-                    format!("`{}` moves, but the shutter is open for no time", moving.name.text),
-                )
-                .at(moving.name.span, "moves")
-                .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time and --frames"),
-            );
-        }
+    {
+        warnings.push(
+            Diagnostic::warning(
+                "no-shutter",
+                format!("`{}` moves, but the shutter is open for no time", moving.name.text),
+            )
+            .at(moving.name.span, "moves")
+            .help("give the camera `shutter = [0, 1]` for motion blur, or render moments with --time and --frames"),
+        );
     }
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };

@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn each_leaf_is_of_one_sort_and_holds_what_it_held() {
-        let is_blocked = |r: &Reference| r.ids().1 % 3 != 0;
+        let is_blocked = |r: &Reference| !r.ids().1.is_multiple_of(3);
         let tree = binned_sah::build(random_boxes(5000, 1), &Costs::WIDE, &Serial);
         let before: Vec<_> = tree.references.iter().map(Reference::ids).collect();
         let parted = part(tree, &is_blocked);

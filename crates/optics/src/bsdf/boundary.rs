@@ -187,10 +187,10 @@ impl DeltaPair {
         if !r.is_black() {
             all.push(self.reflected(wo, r, 1.0));
         }
-        if !t.is_black() {
-            if let Some(s) = self.refracted(wo, t, 1.0, mode) {
-                all.push(s);
-            }
+        if !t.is_black()
+            && let Some(s) = self.refracted(wo, t, 1.0, mode)
+        {
+            all.push(s);
         }
         all
     }

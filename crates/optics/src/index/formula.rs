@@ -27,7 +27,7 @@ impl Formula {
         if count < least || count > most {
             return Err(format!("formula {number} takes {least} to {most} coefficients, not {count}"));
         }
-        if matches!(number, 1..=6) && count % 2 == 0 {
+        if matches!(number, 1..=6) && count.is_multiple_of(2) {
             return Err(format!("formula {number} takes C1 and then pairs, not {count} coefficients"));
         }
         Ok(Formula { number, c: coefficients })

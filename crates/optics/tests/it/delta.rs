@@ -114,7 +114,7 @@ fn branches_are_picked_with_their_stated_probability() {
                     near(like.len() as f64 / f64::from(N), first.pdf, 1.5 / f64::from(N));
                     stated += f64::from(first.pdf);
                 }
-                assert_eq!(drawn.iter().any(|d| all.iter().all(|b| b.lobe != d.lobe)), false, "{}", case.label);
+                assert!(!drawn.iter().any(|d| all.iter().all(|b| b.lobe != d.lobe)), "{}", case.label);
                 if lobes == LobeSet::DELTA && !all.is_empty() {
                     near(stated, 1.0, 1e-6);
                 }
@@ -169,9 +169,9 @@ fn probabilities_are_power() {
 #[test]
 fn mirrors_follow_schlick_or_do_not() {
     let colour = ("reflectance", Value::from([0.9, 0.2, 0.0]));
-    let plain = branches("mirror", &[colour.clone()], 1.0, UP, Mode::Radiance);
+    let plain = branches("mirror", std::slice::from_ref(&colour), 1.0, UP, Mode::Radiance);
     assert_eq!((plain.len(), plain[0].f, plain[0].wi), (1, Light([0.9, 0.2, 0.0, 0.0]), Vec3::new(-0.6, 0.0, 0.8)));
-    let below = branches("mirror", &[colour.clone()], 1.0, Vec3::new(0.6, 0.0, -0.8), Mode::Radiance);
+    let below = branches("mirror", std::slice::from_ref(&colour), 1.0, Vec3::new(0.6, 0.0, -0.8), Mode::Radiance);
     assert_eq!(below[0].wi, Vec3::new(-0.6, 0.0, -0.8));
     let metal = branches("mirror", &[colour, ("fresnel", Value::from("schlick"))], 1.0, UP, Mode::Radiance);
     near(metal[0].f[0], 0.9 + 0.1 * 0.00032, 1e-6);

@@ -80,7 +80,7 @@ fn a_mirror_on_top_takes_its_share() {
 fn rough_mirror_meets_its_equations() {
     let rough = ("roughness", Value::Float(0.4));
     let (f, pdf) = (0.12371574778265387, 0.07907147969212017);
-    check("rough_mirror", &[rough.clone()], LobeSet::ALL, (f, f, pdf));
+    check("rough_mirror", std::slice::from_ref(&rough), LobeSet::ALL, (f, f, pdf));
     let metal = [rough, ("reflectance", Value::Float(0.25)), ("fresnel", Value::from("schlick"))];
     check("rough_mirror", &metal, LobeSet::ALL, (0.03093388593842272, 0.03093388593842272, pdf));
 }
@@ -88,7 +88,7 @@ fn rough_mirror_meets_its_equations() {
 #[test]
 fn rough_dielectric_meets_walter() {
     let rough = ("roughness", Value::Float(0.4));
-    let glass = build("rough_dielectric", &parse(&[rough.clone()]), 1.0);
+    let glass = build("rough_dielectric", &parse(std::slice::from_ref(&rough)), 1.0);
     let all = LobeSet::ALL;
     let one = |lobe| LobeSet::of(lobe);
     // Reflection: F = 0.0416769 times the rough mirror.

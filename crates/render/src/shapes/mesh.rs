@@ -100,7 +100,7 @@ pub(super) enum Source<'a> {
 
 fn inline_mesh(input: &ShapeInput, vertices: &[DVec3]) -> Result<MeshData, Diagnostic> {
     let faces = numbers(input, "faces").unwrap_or_default();
-    if faces.is_empty() || faces.len() % 3 != 0 {
+    if faces.is_empty() || !faces.len().is_multiple_of(3) {
         let what = format!("`faces` has {} numbers", faces.len());
         return Err(degenerate(input, "faces", what, "not three per triangle")
             .help("write the numbers of three vertices for each triangle: `faces = [0, 1, 2]`"));

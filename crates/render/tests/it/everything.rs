@@ -82,10 +82,10 @@ fn everything_that_is_listed_is_in_the_scene() {
     let words: Vec<String> = variants().iter().map(|v| v.replace(' ', "")).collect();
     let is_there = |what: &str| words.iter().any(|w| w.contains(what));
     for spec in catalog().types {
-        let by_kind = match spec.kind {
-            Kind::Material | Kind::Light | Kind::Texture | Kind::Object | Kind::Medium | Kind::Phase => true,
-            _ => false,
-        };
+        let by_kind = matches!(
+            spec.kind,
+            Kind::Material | Kind::Light | Kind::Texture | Kind::Object | Kind::Medium | Kind::Phase
+        );
         let missing_on_purpose = ["measured"].contains(&spec.name);
         assert!(!by_kind || missing_on_purpose || is_there(&format!("type=\"{}\"", spec.name)), "no {}", spec.name);
     }
