@@ -55,7 +55,15 @@ pub(super) fn to_native(
                 Some(image) => texture(image, "map_Ke", false),
                 None => m.ke.unwrap_or_default().into(),
             };
-            ("emitter", Map::default().with("radiance", radiance))
+            if lit(m.ks) || lets_through(m) {
+                let message =
+                    format!("`Ks`, `Tf`, `Ni` and `illum` of material `{}`, which shines, are passed over", m.name);
+                warnings.push(
+                    Diagnostic::warning("ignored", message).help("a lamp reflects diffusely, by `Kd` or `map_Kd`"),
+                );
+            }
+            let map = Map::default().with("radiance", radiance);
+            ("emitter", if black { map } else { with(map, "reflectance", &diffuse) })
         }
         Some(i @ (4 | 6 | 7 | 9)) if lets_through(m) => {
             let transmit = m.tf.unwrap_or(if black { [1.0; 3] } else { [1.0 - m.d.unwrap_or(0.0); 3] });

@@ -12,7 +12,7 @@
 //!
 //! | MTL | native |
 //! |---|---|
-//! | `Ke` or `map_Ke` not black | `emitter` |
+//! | `Ke` or `map_Ke` not black | `emitter`, with `reflectance = Kd` or `map_Kd`; `Ks` and what refracts are warned of |
 //! | `illum` 4, 6, 7, 9 with `d` < 1, `Tf` or `Ni`, black `Kd` | `dielectric` with `ior = Ni`, `transmittance = Tf` |
 //! | the same with a `Kd` | `blinn_phong` with `reflect = Ks` (not for 9), `transmit = Tf` or `1 - d`, `ior`; 7: exact Fresnel |
 //! | `illum` 3, 5 with `Ks`, black `Kd` | `mirror`; 5: Schlick |

@@ -168,7 +168,9 @@ fn materials_become_native_ones() {
             ("fresnel", "constant".into()),
         ],
     );
-    is("newmtl a\nKd 0.5\nKe 3 2 1", "emitter", &[("radiance", [3.0, 2.0, 1.0].into())]);
+    let shines = ("radiance", [3.0, 2.0, 1.0].into());
+    is("newmtl a\nKd 0.5\nKe 3 2 1", "emitter", &[shines.clone(), ("reflectance", [0.5; 3].into())]);
+    is("newmtl a\nKd 0\nKe 3 2 1", "emitter", &[shines]);
 }
 
 #[test]
