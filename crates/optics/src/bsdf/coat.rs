@@ -48,6 +48,10 @@ impl Coat {
         if outside == self.outside { self } else { Coat::new(outside, self.ior) }
     }
 
+    pub(super) fn is_under_vacuum(&self) -> bool {
+        self.outside == 1.0
+    }
+
     /// What is reflected from outside at this cosine.
     pub(super) fn reflectance(&self, cos: f32) -> f32 {
         dielectric(cos.min(1.0), self.outside, self.ior)

@@ -37,6 +37,7 @@ pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
 pub mod plastic;
+pub mod principled;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
@@ -81,6 +82,7 @@ models! {
     thin_dielectric ThinDielectric,
     velvet Velvet,
     microfacet_table MicrofacetTable,
+    principled Principled,
 }
 
 /// What travels along `wo`.

@@ -132,6 +132,11 @@ fn lost(mu: f32, r: f32) -> f32 {
 }
 
 impl Matte {
+    /// The energy-preserving form.
+    pub(super) fn energy_preserving_of(reflectance: Light, roughness: f32) -> Self {
+        Matte { reflectance, roughness, form: Form::EnergyPreserving }
+    }
+
     /// What lies on the reflectance: `f = rho / pi` times this.
     fn energy_preserving(&self, a: &Angles) -> Light {
         let r = self.roughness.min(1.0);

@@ -1,11 +1,12 @@
-//! How much a rough clear coat reflects from each direction: a table per material, over roughness and cosine, made when the scene
-//! is compiled. What is not reflected passes: what bounces among the facets is taken to come through.
+//! How much a rough clear coat reflects from each direction: a table per refractive index, over roughness and cosine, made when
+//! the scene is compiled. What is not reflected passes: what bounces among the facets is taken to come through.
 
 use super::coat::Coat;
 use crate::fresnel::{dielectric, reflect};
 use crate::microfacet::{Distribution, Facets};
 use core::array::from_fn;
 use kirkas_geometry::Vec3;
+use std::sync::{Mutex, PoisonError};
 
 /// Steps of the cosine, `(i / 15)^2`.
 const COSINES: usize = 16;
@@ -14,56 +15,86 @@ const ROUGHS: usize = 12;
 /// Visible normals each way, the midpoints of a grid.
 const NORMALS: usize = 24;
 
-/// The table of one material.
-#[derive(Clone, Debug)]
+/// The table of one refractive index.
+#[derive(Debug)]
 pub(super) struct RoughCoat {
+    distribution: Distribution,
+    ior: f32,
     coat: Coat,
-    rows: Box<[[f32; COSINES]; ROUGHS]>,
+    rows: [[f32; COSINES]; ROUGHS],
+    /// Of white light from everywhere outside, by row.
+    means: [f32; ROUGHS],
 }
 
-/// It at one roughness.
+/// It at one roughness, under one medium.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CoatAt {
+    table: &'static RoughCoat,
     pub(super) coat: Coat,
-    row: [f32; COSINES],
+    row: u32,
+    between: f32,
     /// Of white light from everywhere outside.
     mean: f32,
 }
 
 impl RoughCoat {
-    pub(super) fn new(distribution: Distribution, ior: f32) -> Self {
+    /// Made once for each refractive index in the life of the program (800 bytes), so that points may refer to it.
+    pub(super) fn of(distribution: Distribution, ior: f32) -> &'static Self {
+        static MADE: Mutex<Vec<&RoughCoat>> = Mutex::new(Vec::new());
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_it = |t: &&&RoughCoat| t.distribution == distribution && t.ior.to_bits() == ior.to_bits();
+        if let Some(table) = made.iter().find(is_it) {
+            return table;
+        }
+        let table: &'static RoughCoat = Box::leak(Box::new(Self::new(distribution, ior)));
+        made.push(table);
+        table
+    }
+
+    fn new(distribution: Distribution, ior: f32) -> Self {
         let coat = Coat::new(1.0, ior);
         let row = |k: usize| {
             let alpha = square(k as f32 / (ROUGHS - 1) as f32);
             let facets = Facets::new(distribution, (alpha, alpha));
             from_fn(|i| if k == 0 { coat.reflectance(cosine(i)) } else { albedo(&facets, cosine(i), ior) })
         };
-        RoughCoat { coat, rows: Box::new(from_fn(row)) }
+        let rows: [[f32; COSINES]; ROUGHS] = from_fn(row);
+        RoughCoat { distribution, ior, coat, means: rows.map(|row| mean_of(|i| row[i])), rows }
     }
 
     /// Of facets, under a medium. For any but vacuum the table is scaled as smooth coats would be.
-    pub(super) fn at(&self, facets: &Facets, outside: f32) -> CoatAt {
-        let (k, t) = place(facets.mean_alpha(), ROUGHS);
-        let coat = self.coat.under(outside);
-        let mut row: [f32; COSINES] = from_fn(|i| mix(self.rows[k][i], self.rows[k + 1][i], t));
-        if outside != 1.0 {
-            for (i, r) in row.iter_mut().enumerate() {
-                let cos = cosine(i);
-                let scale = coat.reflectance(cos) / self.coat.reflectance(cos).max(1e-6);
-                *r = (*r * scale).min(1.0);
-            }
+    pub(super) fn at(&'static self, facets: &Facets, outside: f32) -> CoatAt {
+        let (row, between) = place(facets.mean_alpha(), ROUGHS);
+        let mean = mix(self.means[row], self.means[row + 1], between);
+        let mut at = CoatAt { table: self, coat: self.coat.under(outside), row: row as u32, between, mean };
+        if !at.coat.is_under_vacuum() {
+            at.mean = mean_of(|i| at.node(i));
         }
-        let mean = (0..COSINES - 1).map(|i| mean_between(row[i], row[i + 1], i)).sum::<f32>().min(1.0);
-        CoatAt { coat, row, mean }
+        at
     }
 }
 
 impl CoatAt {
+    /// Part of white light from everywhere outside that is reflected.
+    pub(super) fn mean(&self) -> f32 {
+        self.mean
+    }
+
     /// Part of the light from a direction of this cosine that is reflected.
     #[inline]
     pub(super) fn reflectance(&self, cos: f32) -> f32 {
         let (i, t) = place(cos, COSINES);
-        mix(self.row[i], self.row[i + 1], t)
+        mix(self.node(i), self.node(i + 1), t)
+    }
+
+    fn node(&self, i: usize) -> f32 {
+        let row = self.row as usize;
+        let r = mix(self.table.rows[row][i], self.table.rows[row + 1][i], self.between);
+        if self.coat.is_under_vacuum() {
+            return r;
+        }
+        let cos = cosine(i);
+        (r * self.coat.reflectance(cos) / self.table.coat.reflectance(cos).max(1e-6)).min(1.0)
     }
 
     /// The same coat as if smooth, letting out of diffuse light from below as much as this one.
@@ -94,6 +125,11 @@ fn albedo(facets: &Facets, cos: f32, ior: f32) -> f32 {
 /// The cosine of a step; the first one is all but grazing.
 fn cosine(i: usize) -> f32 {
     square(i as f32 / (COSINES - 1) as f32).max(1e-3)
+}
+
+/// The mean over all directions, weighted by their cosines.
+fn mean_of(node: impl Fn(usize) -> f32) -> f32 {
+    (0..COSINES - 1).map(|i| mean_between(node(i), node(i + 1), i)).sum::<f32>().min(1.0)
 }
 
 /// The integral of `2 mu` times what lies between two steps, linear in the root of `mu`.
@@ -130,7 +166,7 @@ mod tests {
     #[test]
     fn smooth_coats_have_the_mean_of_fresnel() {
         for ior in [1.3, 1.5, 2.0] {
-            let table = RoughCoat::new(Distribution::Ggx, ior);
+            let table = RoughCoat::of(Distribution::Ggx, ior);
             let at = table.at(&Facets::ggx(0.0), 1.0);
             let mean = diffuse_reflectance(f64::from(ior));
             assert!((f64::from(at.mean) - mean).abs() < 3e-3, "{} {mean}", at.mean);

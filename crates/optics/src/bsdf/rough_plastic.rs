@@ -29,7 +29,7 @@
 //! ## Limits
 //!
 //! Light that would bounce among the facets passes through them, so nothing is lost: white gives back all it gets within 1 % (3 % with `anisotropy`). `R`
-//! is tabulated once per material; with `anisotropy`, and under another medium than vacuum, it is that of a like coat.
+//! is tabulated once per `ior`; with `anisotropy`, and under another medium than vacuum, it is that of a like coat.
 //!
 //! ## References
 //!
@@ -63,7 +63,7 @@ const STRETCH: usize = slot(SPEC.params, "anisotropy");
 /// The fixed parameters.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    table: RoughCoat,
+    table: &'static RoughCoat,
     facetting: Facetting,
     saturates: bool,
 }
@@ -86,7 +86,7 @@ impl Prepare for Prepared {
     type At = RoughPlastic;
     fn prepare(params: &Params, palette: &Palette) -> Self {
         let facetting = Facetting::read(params);
-        let table = RoughCoat::new(facetting.distribution(), palette.index(params, "ior").at_d_line());
+        let table = RoughCoat::of(facetting.distribution(), palette.index(params, "ior").at_d_line());
         Prepared { table, facetting, saturates: params.bool("saturates") }
     }
     fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> RoughPlastic {

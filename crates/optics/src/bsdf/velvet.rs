@@ -35,12 +35,14 @@
 use super::opaque::{Opaque, Reflector};
 use super::{Interface, Mode, Prepare, slot};
 use crate::{Lanes, Light, Palette};
+use core::array::from_fn;
 use core::f32::consts::PI;
 use kirkas_geometry::Vec3;
-use kirkas_geometry::elementary::{exp_f32, pow_f32};
+use kirkas_geometry::elementary::{exp_f32, pow_f32, sin_cos_f32};
 use kirkas_geometry::warp::square_to_uniform_sphere;
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Kind, ParamSpec, Params, TypeSpec};
+use std::sync::OnceLock;
 
 /// The table.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -118,6 +120,40 @@ impl Fibres {
         let [a, b, c, d, e] = core::array::from_fn(|i| t * AT_0[i] + (1.0 - t) * AT_1[i]);
         a / (1.0 + b * pow_f32(x, c)) + d * x + e
     }
+}
+
+/// Steps of the cosine, `(i / 15)^2`, and of the roughness.
+const COSINES: usize = 16;
+const ROUGHS: usize = 8;
+
+/// Albedo of white fibres from this cosine: from a table, made when it is first asked for, of midpoints over the hemisphere.
+pub(super) fn fibre_albedo(fibres: &Fibres, cos: f32) -> f32 {
+    static TABLE: OnceLock<[[f32; COSINES]; ROUGHS]> = OnceLock::new();
+    let table = TABLE.get_or_init(|| from_fn(|k| from_fn(|i| tabulated_albedo(k, i))));
+    let y = (fibres.roughness - LEAST_ROUGHNESS) / (1.0 - LEAST_ROUGHNESS) * (ROUGHS - 1) as f32;
+    let x = cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32;
+    let (k, i) = ((y as usize).min(ROUGHS - 2), (x as usize).min(COSINES - 2));
+    let along = |row: &[f32; COSINES]| row[i] + (row[i + 1] - row[i]) * (x - i as f32);
+    along(&table[k]) + (along(&table[k + 1]) - along(&table[k])) * (y - k as f32)
+}
+
+fn tabulated_albedo(k: usize, i: usize) -> f32 {
+    const HEIGHTS: usize = 32;
+    const TURNS: usize = 16;
+    let fibres = Fibres { roughness: LEAST_ROUGHNESS + (1.0 - LEAST_ROUGHNESS) * k as f32 / (ROUGHS - 1) as f32 };
+    let root = i as f32 / (COSINES - 1) as f32;
+    let mu = (root * root).max(1e-3);
+    let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, mu);
+    let mut sum = 0.0;
+    for a in 0..HEIGHTS {
+        let z = (a as f32 + 0.5) / HEIGHTS as f32;
+        let r = ((1.0 - z) * (1.0 + z)).sqrt();
+        for b in 0..TURNS {
+            let (sin, cos) = sin_cos_f32(PI * (b as f32 + 0.5) / TURNS as f32);
+            sum += fibres.value(wo, Vec3::new(r * cos, r * sin, z)) * z;
+        }
+    }
+    2.0 * PI * sum / (HEIGHTS * TURNS) as f32
 }
 
 impl Reflector for Cloth {

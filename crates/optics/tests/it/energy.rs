@@ -39,6 +39,7 @@ fn a_furnace_is_never_outshone_and_sampling_agrees() {
                     (true, false) => 5e-3,
                     // What a rough coat reflects is from one as well.
                     (_, true) if case.label.starts_with("rough_plastic") => 3e-2,
+                    _ if case.label.starts_with("principled") => 2e-2,
                     _ if case.label.starts_with("rough_plastic") => 1e-2,
                     _ => 1e-4,
                 };
@@ -175,6 +176,18 @@ fn coats_and_panes_keep_their_light() {
         for words in ["roughness=0.05", "roughness=0.3", "roughness=0.3 distribution=beckmann", "roughness=1 ior=1.8"] {
             let white = with("rough_plastic", &format!("reflectance=1 {words}"));
             near(scattered(&white, wo, 0, Mode::Radiance), 1.0, 1e-2);
+        }
+        for (words, most) in [
+            ("", 0.01),
+            ("metalness=1", 0.01),
+            ("metalness=0.5", 0.01),
+            ("diffuse_roughness=1", 0.02),
+            ("coat=1 coat_roughness=0.2", 0.15),
+            ("fuzz=1", 0.15),
+        ] {
+            let white = with("principled", &format!("base_color=1 roughness=0.3 {words}"));
+            let total = scattered(&white, wo, 0, Mode::Radiance);
+            assert!(total <= 1.01 && total >= 1.0 - most, "{words} from {wo}: {total}");
         }
         near(deltas(&with("thin_dielectric", ""), wo, 0, Mode::Radiance), 1.0, 1e-6);
     }

@@ -212,6 +212,14 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "shape=cross spread=0.5",
             "shape=table columns=4 table=1,1,1,1,3,0.5,3,0.5,0.1,2,0.1,2,0.2,0.2,0.2,0.2,0,0,0,0.1",
         ],
+        "principled" => &[
+            "",
+            "base_color=0.6,0.3,0.1 roughness=0.2 specular=0.5 specular_color=0.9,0.5,0.7 diffuse_roughness=0.8 ior=1.8",
+            "base_color=0.8,0.5,0.2 metalness=1 roughness=0.4 anisotropy=0.5 specular_color=0.9,0.8,0.7",
+            "base_color=0.8,0.5,0.2 metalness=0.4 coat=1 coat_roughness=0.2 coat_color=0.9,0.8,0.7 roughness=0.4",
+            "base_color=1 fuzz=0.8 fuzz_color=0.9,0.6,0.7 fuzz_roughness=0.4 specular=0",
+            "base_color=1 coat=0.5 fuzz=0.3 roughness=0.5 coat_roughness=0.1 outside=1.33",
+        ],
         "velvet" => &[
             "diffuse=0.1,0.2,0.3 sheen=0.5,0.4,0.6 roughness=0.3",
             "diffuse=0 sheen=1 roughness=0.1",
@@ -318,4 +326,10 @@ fn media_are_read_from_the_rows() {
     for name in ["lambert", "mirror", "rough_mirror", "emitter"] {
         assert!(build(name, &Map::default(), 1.0).model.medium().is_none());
     }
+}
+
+/// A hit carries its model about: it must stay small.
+#[test]
+fn a_model_at_a_point_is_small() {
+    assert!(size_of::<Bsdf>() <= 288, "{}", size_of::<Bsdf>());
 }

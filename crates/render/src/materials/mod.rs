@@ -17,7 +17,7 @@ pub const COMMON: &[ParamSpec] = &[ParamSpec::number_texture(
 )];
 
 /// The most texture rows that a model has.
-const MOST_ROWS: usize = 8;
+const MOST_ROWS: usize = 16;
 
 /// A compiled material.
 pub struct Material {
