@@ -14,6 +14,7 @@ pub mod medium;
 pub mod microfacet;
 pub mod phase;
 pub mod spectrum;
+pub mod thin_film;
 
 pub use bsdf::{Branches, Bsdf, BsdfModel, BsdfSample, Interface, Lobe, LobeSet, Mode, SPECS};
 pub use index::Index;

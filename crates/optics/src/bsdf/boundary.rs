@@ -2,6 +2,7 @@
 
 use super::{Branches, BsdfSample, Lobe, LobeSet, Mode};
 use crate::index::Index;
+use crate::thin_film::{Beneath, Film};
 use crate::{Lanes, Light, fresnel};
 use kirkas_geometry::Vec3;
 
@@ -91,6 +92,8 @@ pub(crate) struct Split {
     pub(crate) reflect: Light,
     pub(crate) transmit: Light,
     pub(crate) fresnel: Fresnel,
+    /// Between the two, unless the weights are constant.
+    pub(crate) film: Option<Film>,
 }
 
 impl Split {
@@ -98,6 +101,22 @@ impl Split {
     /// black under total reflection, and still of all lanes.
     pub(crate) fn at(&self, cos_o: f32, interface: &Interface, wo: Vec3) -> (Light, Light) {
         let (eta_o, eta_i) = interface.seen_from(wo);
+        if let (Some(film), false) = (&self.film, self.fresnel == Fresnel::Constant) {
+            let n = match &interface.spread {
+                Some(spread) => {
+                    if wo.z > 0.0 {
+                        spread.below
+                    } else {
+                        spread.above
+                    }
+                }
+                None => Light::splat(eta_i),
+            };
+            let r = film.reflectance(cos_o, eta_o, &Beneath { n, k: Light::BLACK });
+            // Beyond the critical angle the film lets nothing through, but for rounding.
+            let r = if fresnel::refracted_cosine(cos_o, eta_o, eta_i).is_some() { r } else { Light::splat(1.0) };
+            return (self.reflect * r, self.transmit * r.map(|r| 1.0 - r));
+        }
         let Some(spread) = &interface.spread else {
             let (r, t) = self.parts(cos_o, eta_o, eta_i);
             return (self.reflect * r, self.transmit * t);

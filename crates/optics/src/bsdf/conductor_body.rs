@@ -1,8 +1,8 @@
 //! What smooth and rough conductors share: their rows and the reflectance of a metal at an angle.
 
 use super::mirror_body::Reflective;
-use super::slot;
 use crate::index::MetalCurves;
+use crate::thin_film::{Beneath, Film};
 use crate::{Lanes, Light, Palette, fresnel};
 use kirkas_scene::{Fallback, ParamSpec, ParamType, Params};
 
@@ -24,9 +24,6 @@ pub(super) const K: ParamSpec = ParamSpec::new(
 .range((0.0, f64::INFINITY));
 /// Row `reflectance`.
 pub(super) const REFLECTANCE_ROW: ParamSpec = ParamSpec::reflectance("reflectance", [1.0; 3], "tints the reflection");
-/// All of them.
-pub(super) const ROWS: [ParamSpec; 3] = [IOR, K, REFLECTANCE_ROW];
-pub(super) const REFLECTANCE: usize = slot(&ROWS, "reflectance");
 
 /// The constants of a conductor.
 #[derive(Clone, Debug)]
@@ -45,6 +42,7 @@ pub struct Metal {
     tint: Light,
     /// Index outside.
     eta_o: f32,
+    film: Option<Film>,
 }
 
 impl Constants {
@@ -55,17 +53,20 @@ impl Constants {
         }
     }
 
-    pub(super) fn at(&self, lanes: &Lanes, tint: Light, eta_o: f32) -> Metal {
+    pub(super) fn at(&self, lanes: &Lanes, tint: Light, eta_o: f32, film: Option<Film>) -> Metal {
         let (n, k) = match self {
             Constants::Measured(curves) => curves.at(lanes),
             Constants::Plain(n, k) => (Light::splat(*n), k.at(lanes)),
         };
-        Metal { n, k, tint, eta_o }
+        Metal { n, k, tint, eta_o, film }
     }
 }
 
 impl Reflective for Metal {
     fn reflectance(&self, cos: f32) -> Light {
+        if let Some(film) = &self.film {
+            return film.reflectance(cos, self.eta_o, &Beneath { n: self.n, k: self.k }) * self.tint;
+        }
         let at = |lane: usize| fresnel::conductor(cos, self.n[lane] / self.eta_o, self.k[lane] / self.eta_o);
         Light(core::array::from_fn(at)) * self.tint
     }
@@ -73,6 +74,11 @@ impl Reflective for Metal {
     /// By the curve through its values at 0, 82 and 90 degrees (Lazányi & Szirmay-Kalos 2005; N. Hoffman, "Fresnel Equations
     /// Considered Harmful", 2019): `F0 + (1 - F0)(1 - mu)^5 - a mu (1 - mu)^6`, whose mean is `F0 + (1 - F0) / 21 - a / 126`.
     fn mean(&self) -> Light {
+        if self.film.is_some() {
+            // Gauss & Legendre in the cosine's square.
+            let at = |x: f32| self.reflectance(x.sqrt());
+            return (at(0.112_701_67) + at(0.887_298_35)) * (5.0 / 18.0) + at(0.5) * (8.0 / 18.0);
+        }
         const MU: f32 = 1.0 / 7.0;
         const FIFTH: f32 = 7776.0 / 16807.0;
         const A: f32 = 46656.0 / 823_543.0;

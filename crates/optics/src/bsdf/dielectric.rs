@@ -15,6 +15,8 @@
 //! | `absorption` | colour | 1/scene unit | 0 | light inside fades as `exp(-absorption distance)` (Beer & Lambert) |
 //! | `priority` | whole number | | 0 | among overlapping insides the highest wins |
 //! | `interior` | medium | | none | what scatters inside |
+//! | `film_thickness` | number or texture, 0..10^5 | nm | 0 | thickness of a film that interferes; 0 is none |
+//! | `film_ior` | number, at least 0.01 | | 1.33 | refractive index of the film |
 //!
 //! ## Example
 //!
@@ -35,12 +37,15 @@
 //! Let bodies overlap where they meet (`priority` says who fills the overlap) or leave a gap: boundaries that coincide exactly
 //! are met as one, so that touching bodies of different index look too dark or too bright.
 //!
+//! With a film, colour is exact in spectral renders; in RGB it is that of 27 bands of the spectrum under D65. See `thin_film`.
+//!
 //! ## References
 //!
 //! M. Born & E. Wolf, "Principles of Optics", 7th ed., section 1.5. C. Schlick 1994, equation 15. E. Veach 1997, section 5.2
 //! (radiance over n^2). C. M. Schmidt & B. Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002.
 
 use super::boundary::{DeltaPair, Fresnel, Split, pick};
+use super::film::{FILM_IOR, FILM_THICKNESS, FilmKind};
 use super::hull::INTERIOR;
 use super::{Branches, BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, slot};
 use crate::{Lanes, Light, Medium, Palette};
@@ -52,7 +57,17 @@ pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Material,
     name: "dielectric",
     doc: "A smooth clear boundary: glass, water, diamond.",
-    params: &[IOR, FRESNEL, REFLECTANCE_ROW, TRANSMITTANCE_ROW, ABSORPTION, PRIORITY, INTERIOR],
+    params: &[
+        IOR,
+        FRESNEL,
+        REFLECTANCE_ROW,
+        TRANSMITTANCE_ROW,
+        ABSORPTION,
+        PRIORITY,
+        INTERIOR,
+        FILM_THICKNESS,
+        FILM_IOR,
+    ],
 };
 pub(super) const IOR: ParamSpec = ParamSpec::new(
     "ior",
@@ -76,12 +91,14 @@ pub(super) const PRIORITY: ParamSpec =
     ParamSpec::integer("priority", 0, (-1e6, 1e6), "where insides overlap, the highest wins");
 
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
+const THICKNESS: usize = slot(SPEC.params, "film_thickness");
 const TRANSMITTANCE: usize = slot(SPEC.params, "transmittance");
 
 /// The fixed parameters.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     fresnel: Fresnel,
+    film: FilmKind,
     medium: Medium,
 }
 
@@ -103,10 +120,19 @@ pub(super) fn read_medium(params: &Params, palette: &Palette) -> Medium {
 impl Prepare for Prepared {
     type At = Dielectric;
     fn prepare(params: &Params, palette: &Palette) -> Self {
-        Prepared { fresnel: Fresnel::of(params.text("fresnel")), medium: read_medium(params, palette) }
+        Prepared {
+            fresnel: Fresnel::of(params.text("fresnel")),
+            film: FilmKind::read(params),
+            medium: read_medium(params, palette),
+        }
     }
-    fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> Dielectric {
-        let split = Split { reflect: slots[REFLECTANCE], transmit: slots[TRANSMITTANCE], fresnel: self.fresnel };
+    fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> Dielectric {
+        let split = Split {
+            reflect: slots[REFLECTANCE],
+            transmit: slots[TRANSMITTANCE],
+            fresnel: self.fresnel,
+            film: self.film.at(lanes, slots[THICKNESS]),
+        };
         Dielectric { pair: DeltaPair { split, interface } }
     }
     fn medium(&self) -> Option<&Medium> {

@@ -49,6 +49,7 @@ pub mod ward;
 mod boundary;
 mod coat;
 mod conductor_body;
+mod film;
 mod lobes;
 mod mirror_body;
 mod opaque;

@@ -98,7 +98,7 @@ impl<H: Highlight> Prepare for Prepared<H> {
 
     fn at(&self, _: &Lanes, slots: &[Light], interface: Interface) -> Body<H> {
         let transmit = if self.transmits { slots[TRANSMIT] } else { Light::BLACK };
-        let split = Split { reflect: slots[REFLECT], transmit, fresnel: self.fresnel };
+        let split = Split { reflect: slots[REFLECT], transmit, fresnel: self.fresnel, film: None };
         Body {
             diffuse: slots[DIFFUSE],
             specular: slots[SPECULAR],

@@ -14,6 +14,8 @@
 //! | `absorption` | colour | 1/scene unit | 0 | light inside fades as `exp(-absorption distance)` |
 //! | `priority` | whole number | | 0 | among overlapping insides the highest wins |
 //! | `interior` | medium | | none | what scatters inside |
+//! | `film_thickness` | number or texture, 0..10^5 | nm | 0 | thickness of a film that interferes; 0 is none |
+//! | `film_ior` | number, at least 0.01 | | 1.33 | refractive index of the film |
 //! | `roughness` | number or texture, 0..1 | | 0.2 | alpha: about the RMS slope of the facets; 0.05 polished, 0.5 dull |
 //! | `anisotropy` | number or texture, -1..1 | | 0 | `alpha_u = roughness (1 + anisotropy)` along the texture's u, `alpha_v = roughness (1 - anisotropy)` |
 //! | `distribution` | `ggx`, `beckmann` | | `ggx` | slopes with long tails, or Gaussian ones |
@@ -32,6 +34,8 @@
 //! Light that would bounce among the facets is lost. Roughness below 0.001 acts as 0.001, and indices nearer than 0.1 % as
 //! 0.1 % apart. Radiance over n^2, and `constant`, as in `dielectric`. Transmission uses the separable G of Walter et al.
 //!
+//! With a film, colour is exact in spectral renders; in RGB it is that of 27 bands of the spectrum under D65. See `thin_film`.
+//!
 //! ## References
 //!
 //! B. Walter, S. R. Marschner, H. Li & K. E. Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007,
@@ -39,6 +43,7 @@
 
 use super::boundary::{Fresnel, Split, pick, square};
 use super::dielectric::{ABSORPTION, FRESNEL, IOR, PRIORITY, REFLECTANCE_ROW, TRANSMITTANCE_ROW, read_medium};
+use super::film::{FILM_IOR, FILM_THICKNESS, FilmKind};
 use super::hull::INTERIOR;
 use super::roughness::{ANISOTROPY, DISTRIBUTION, Kind as Facetting};
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, roughness, slot};
@@ -64,9 +69,12 @@ pub const SPEC: TypeSpec = TypeSpec {
         ANISOTROPY,
         DISTRIBUTION,
         INTERIOR,
+        FILM_THICKNESS,
+        FILM_IOR,
     ],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
+const THICKNESS: usize = slot(SPEC.params, "film_thickness");
 const TRANSMITTANCE: usize = slot(SPEC.params, "transmittance");
 const ROUGHNESS: usize = slot(SPEC.params, "roughness");
 const STRETCH: usize = slot(SPEC.params, "anisotropy");
@@ -78,6 +86,7 @@ const LEAST_CONTRAST: f32 = 1e-3;
 #[derive(Clone, Debug)]
 pub struct Prepared {
     fresnel: Fresnel,
+    film: FilmKind,
     facetting: Facetting,
     medium: Medium,
 }
@@ -95,17 +104,23 @@ impl Prepare for Prepared {
     fn prepare(params: &Params, palette: &Palette) -> Self {
         Prepared {
             fresnel: Fresnel::of(params.text("fresnel")),
+            film: FilmKind::read(params),
             facetting: Facetting::read(params),
             medium: read_medium(params, palette),
         }
     }
-    fn at(&self, _: &Lanes, slots: &[Light], mut interface: Interface) -> RoughDielectric {
+    fn at(&self, lanes: &Lanes, slots: &[Light], mut interface: Interface) -> RoughDielectric {
         let (above, below) = (interface.eta_above, interface.eta_below);
         if (below / above - 1.0).abs() < LEAST_CONTRAST {
             interface.eta_below = above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST };
         }
         RoughDielectric {
-            split: Split { reflect: slots[REFLECTANCE], transmit: slots[TRANSMITTANCE], fresnel: self.fresnel },
+            split: Split {
+                reflect: slots[REFLECTANCE],
+                transmit: slots[TRANSMITTANCE],
+                fresnel: self.fresnel,
+                film: self.film.at(lanes, slots[THICKNESS]),
+            },
             facets: self.facetting.facets(slots[ROUGHNESS], slots[STRETCH]),
             interface,
         }

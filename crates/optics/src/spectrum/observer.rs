@@ -9,6 +9,9 @@ use std::sync::LazyLock;
 
 /// Stretches of equal probability that wavelengths are drawn from.
 pub const CELLS: usize = 256;
+/// Bands that a spectrum is cut into for what RGB renders must add up.
+pub const BANDS: usize = 27;
+const WIDTH: usize = SAMPLES / BANDS;
 
 /// How paths share out the wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +33,7 @@ pub struct Observer {
     /// Weights of a curve's samples in its red, green and blue when lit by `white`.
     reflected_weights: [[f64; 3]; SAMPLES],
     /// Ends of the cells, nm, by [`Draw`].
+    bands: [(f32, [f64; 3]); BANDS],
     ends: [[f32; CELLS + 1]; 2],
 }
 
@@ -68,6 +72,11 @@ impl Observer {
             white: white.map(|x| x as f32),
             light_weights: core::array::from_fn(|i| by_sample(&light, i)),
             reflected_weights: core::array::from_fn(|i| by_sample(&reflected, i)),
+            bands: core::array::from_fn(|band| {
+                let middle = WIDTH * band + WIDTH / 2;
+                let weights = core::array::from_fn(|c| (0..WIDTH).map(|i| reflected[c][WIDTH * band + i]).sum());
+                ((FIRST + STEP * middle as f64) as f32, weights)
+            }),
             ends: [0.01, 1.0].map(|floor| cell_ends(&bars, &white, floor)),
         }
     }
@@ -100,6 +109,11 @@ impl Observer {
     /// The colour of a surface with this reflectance under D65.
     pub fn color_of_reflectance(&self, samples: &[f32; SAMPLES]) -> [f64; 3] {
         weighted(&self.reflected_weights, samples)
+    }
+
+    /// Bands of the spectrum, their middles in nm, with what they add to the red, green and blue of a surface under D65.
+    pub fn bands(&self) -> &[(f32, [f64; 3]); BANDS] {
+        &self.bands
     }
 
     /// See `reflected_weights`.

@@ -16,6 +16,7 @@ mod reference;
 mod rgl;
 mod samples;
 mod spectrum;
+mod thin_film;
 mod values;
 
 /// `|a - b| <= tolerance`, with both in the message.

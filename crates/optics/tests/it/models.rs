@@ -96,13 +96,13 @@ pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map
     let bsdf = model.at(&lanes, &slots, interface);
     let written = |name: &str| params.entity.params.get(name).and_then(Node::text);
     let classic = written("form") == Some("classic");
+    let lopsided = classic && type_name.contains("phong");
     let is_constant = written("fresnel").map_or(type_name.contains("phong"), |word| word == "constant");
     let label = format!("{type_name} {:?}", entity.params.iter().map(|(n, v)| (&n.text, &v.value)).collect::<Vec<_>>());
     Case {
         label,
         // Measurements by slices of one direction are reciprocal up to their noise only.
-        is_reciprocal: !(classic && type_name.contains("phong"))
-            && !written("file").is_some_and(|f| f.ends_with(".bsdf")),
+        is_reciprocal: !(lopsided || written("file").is_some_and(|f| f.ends_with(".bsdf"))),
         is_bounded: !classic,
         scales_radiance: !(is_constant && model.medium().is_some()),
         model,
@@ -137,6 +137,7 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "",
             "ior=1.1 fresnel=schlick transmittance=0.3,0.2,0.9 outside=1.33",
             "ior=2.4 reflectance=0.5",
+            "ior=1.5 film_thickness=400",
             "reflectance=0.25 transmittance=0.5 fresnel=constant",
         ],
         "rough_mirror" => &[
@@ -154,14 +155,21 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "reflectance=0.25 transmittance=0.5 roughness=0.8 fresnel=constant",
             "roughness=0.4 anisotropy=0.5 distribution=beckmann",
             "roughness=0.3 anisotropy=-0.7",
+            "roughness=0.3 film_thickness=600 film_ior=2.1",
         ],
-        "conductor" => &["ior=0.2 k=3.5,2.5,1.9", "ior=1.5 k=4 reflectance=0.5 outside=1.33", "ior=@gold"],
+        "conductor" => &[
+            "ior=0.2 k=3.5,2.5,1.9",
+            "ior=1.5 k=4 reflectance=0.5 outside=1.33",
+            "ior=@gold",
+            "ior=@gold film_thickness=350 film_ior=1.5",
+        ],
         "rough_conductor" => &[
             "ior=0.2 k=3.5,2.5,1.9 roughness=0.5",
             "ior=1.5 k=4 roughness=0.15 outside=1.33",
             "ior=@copper roughness=1",
             "ior=0.2 k=3 roughness=0.6 anisotropy=-0.5 distribution=beckmann",
             "ior=0.2 k=3.5,2.5,1.9 roughness=0.5 compensation=true",
+            "ior=2.9 k=3.1 roughness=0.3 film_thickness=150 film_ior=2.3 compensation=true",
         ],
         "emitter" => &["", "intensity=5 reflectance=0.2,0.5,0.9", "radiance=1,2,3 unit=nit"],
         "hull" => &["", "outside=1.33", "priority=3"],
@@ -263,7 +271,17 @@ fn the_list_holds_each_model_once_with_its_rows() {
     assert_eq!((rows("phong"), rows("blinn_phong")), (phong.to_vec(), phong.to_vec()));
     assert_eq!(
         rows("dielectric"),
-        ["ior", "fresnel", "reflectance", "transmittance", "absorption", "priority", "interior"]
+        [
+            "ior",
+            "fresnel",
+            "reflectance",
+            "transmittance",
+            "absorption",
+            "priority",
+            "interior",
+            "film_thickness",
+            "film_ior"
+        ]
     );
     let rough = [
         "ior",
@@ -276,6 +294,8 @@ fn the_list_holds_each_model_once_with_its_rows() {
         "anisotropy",
         "distribution",
         "interior",
+        "film_thickness",
+        "film_ior",
     ];
     assert_eq!(rows("rough_dielectric"), rough);
     let textured: Vec<&str> = texture_rows(spec("phong")).map(|r| r.name).collect();
