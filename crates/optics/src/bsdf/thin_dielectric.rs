@@ -26,8 +26,8 @@
 //!
 //! ## Limits
 //!
-//! Light is not shifted sideways, the longer way at grazing angles is taken into account only in colour (`tau` to the power of one
-//! over the cosine inside), and nothing interferes. `tau` does not bend light, so it casts proper shadows.
+//! Light is not shifted sideways, and nothing interferes. The longer way at grazing angles counts only in `tau`, which is taken to
+//! the power of one over the cosine inside.
 //!
 //! ## References
 //!

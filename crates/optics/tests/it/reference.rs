@@ -63,3 +63,16 @@ fn every_model_meets_its_reference_at_a_thousand_pairs_of_directions() {
         }
     }
 }
+
+/// The tables are what their scripts say, where there is a Python with NumPy (`KIRKAS_PYTHON`, else `python3`).
+#[test]
+fn the_references_are_what_their_scripts_write() {
+    let python = std::env::var("KIRKAS_PYTHON").unwrap_or_else(|_| "python3".into());
+    let run = |arguments: &[&str]| std::process::Command::new(&python).arg("-B").args(arguments).output();
+    if !run(&["-c", "import numpy"]).is_ok_and(|o| o.status.success()) {
+        println!("skipped: no `{python}` with NumPy");
+        return;
+    }
+    let made = run(&[&format!("{FOLDER}make.py"), "--check"]).unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}

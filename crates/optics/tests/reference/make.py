@@ -2,6 +2,7 @@
 sets at the pairs of directions of pairs.txt, computed in float64. Needs NumPy.
 
     python3 crates/optics/tests/reference/make.py [NAME ...]
+    python3 crates/optics/tests/reference/make.py --check [NAME ...]    only tell whether the files hold what it would write
 """
 
 import importlib
@@ -36,7 +37,7 @@ def make_pairs():
     np.savetxt(HERE / "pairs.txt", np.hstack([o, i]).astype(np.float32), fmt="%.9g")
 
 
-def write(name, pairs):
+def compute(name, pairs):
     model = importlib.import_module(name)
     o, i = pairs[:, :3], pairs[:, 3:]
     lane = np.arange(len(pairs)) % 3
@@ -46,12 +47,26 @@ def write(name, pairs):
         if not np.isfinite(f).all():
             raise SystemExit(f"{name} {line}: {np.count_nonzero(~np.isfinite(f))} values are not finite")
         columns.append(np.take_along_axis(f, lane[:, None], 1)[:, 0])
+    return model.SETS, np.array(columns).T
+
+
+def check(name, pairs):
+    sets, values = compute(name, pairs)
+    path = HERE / f"{name}.txt"
+    written = [line[6:] for line in path.read_text().splitlines() if line.startswith("# set ")]
+    kept = np.loadtxt(path, ndmin=2)
+    if written != sets or kept.shape != values.shape or not np.allclose(kept, values, rtol=1e-5, atol=1e-12):
+        raise SystemExit(f"{path.name} is not what {name}.py says")
+
+
+def write(name, pairs):
+    sets, values = compute(name, pairs)
     with open(HERE / f"{name}.txt", "w") as out:
         out.write(f"# python3 crates/optics/tests/reference/make.py {name}\n")
         out.write("# One line per pair of pairs.txt, one column per set; the lane is the line's number modulo 3.\n")
-        for line in model.SETS:
+        for line in sets:
             out.write(f"# set {line}\n")
-        for row in zip(*columns):
+        for row in values:
             out.write(" ".join("0" if x == 0 else f"{x:.6e}" for x in row) + "\n")
 
 
@@ -59,8 +74,10 @@ def main(names):
     if not (HERE / "pairs.txt").exists():
         make_pairs()
     pairs = np.loadtxt(HERE / "pairs.txt").astype(np.float32).astype(np.float64)
+    act = check if "--check" in names else write
+    names = [name for name in names if name != "--check"]
     for name in names or sorted(p.stem for p in HERE.glob("*.py") if p.stem not in SHARED):
-        write(name, pairs)
+        act(name, pairs)
 
 
 if __name__ == "__main__":
