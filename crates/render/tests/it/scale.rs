@@ -180,6 +180,9 @@ const WAYS: [&str; 3] = [
 
 const WHITE: &str = "[materials.white]\ntype = \"lambert\"\nreflectance = 1\n";
 
+/// Integrators that show what a lamp lights directly.
+const DIRECT: [&str; 2] = ["type = \"whitted\"\n", "type = \"path\"\nmax_depth = 1\n"];
+
 fn normals(film: &Film) -> Vec<(Rgb, f32)> {
     film.pixels()
         .map(|(_, _, t, i)| {
@@ -193,7 +196,7 @@ fn normals(film: &Film) -> Vec<(Rgb, f32)> {
 #[test]
 fn grazing_light_leaves_no_speckles() {
     let to_sun: Rgb = [0.8, 0.0, 0.6];
-    for s in [1e-6, 1.0, 1e6] {
+    for (s, integrator) in [1e-6, 1.0, 1e6].into_iter().flat_map(|s| DIRECT.map(|i| (s, i))) {
         for (name, body) in BODIES {
             for (way, placed) in WAYS.iter().enumerate() {
                 for lamp in [
@@ -203,7 +206,7 @@ fn grazing_light_leaves_no_speckles() {
                 ] {
                     let toml = scaled(
                         &format!(
-                            "{WHITE}{lamp}{}[film]\nwidth = 32\nheight = 32\nfilter = \"point\"\n[sampler]\nsamples = 1
+                            "[integrator]\n{integrator}{WHITE}{lamp}{}[film]\nwidth = 32\nheight = 32\nfilter = \"point\"\n[sampler]\nsamples = 1
                              [cameras.c]\ntype = \"orthographic\"\nposition = [@-2, @1, @4]\nlook_at = [0, 0, 0]\nheight = @2.4\n",
                             placed.replace("BODY", body)
                         ),
@@ -223,10 +226,13 @@ fn grazing_light_leaves_no_speckles() {
                         let away = (0..3).map(|c| n[c] * [-2.0, 1.0, 4.0][c]).sum::<f64>() < 0.0;
                         let truth = if flat && away { (-cos).max(0.0) } else { cos.max(0.0) };
                         let value = f64::from(tile.mean(i)[1]);
-                        assert!((value - truth).abs() < 2e-3, "{name} {way} at {s}: {value} is not {truth}");
+                        assert!(
+                            (value - truth).abs() < 2e-3,
+                            "{integrator}: {name} {way} at {s}: {value} is not {truth}"
+                        );
                         lit += usize::from(value > 0.0);
                     }
-                    assert!(lit > 30, "{name} {way} at {s}: {lit} lit pixels");
+                    assert!(lit > 30, "{integrator}: {name} {way} at {s}: {lit} lit pixels");
                 }
             }
         }
@@ -255,9 +261,9 @@ fn a_traced_path_looks_the_same_at_any_size() {
 /// Straight above its middle a torus hides no lit point of its upper half.
 #[test]
 fn a_torus_lit_along_its_axis_has_no_speckles() {
-    for s in [1e-6, 1.0, 1e6] {
+    for (s, integrator) in [1e-6, 1.0, 1e6].into_iter().flat_map(|s| DIRECT.map(|i| (s, i))) {
         let toml = scaled(
-            &format!("{WHITE}[lights.l]\ntype = \"directional\"\n[objects.o]\ntype = \"torus\"\nmajor_radius = @1\nminor_radius = @0.4\nmaterial = \"white\"
+            &format!("[integrator]\n{integrator}{WHITE}[lights.l]\ntype = \"directional\"\n[objects.o]\ntype = \"torus\"\nmajor_radius = @1\nminor_radius = @0.4\nmaterial = \"white\"
                 [film]\nwidth = 64\nheight = 64\nfilter = \"point\"\n[sampler]\nsamples = 1
                 [cameras.c]\ntype = \"orthographic\"\nposition = [@0, @5, @2]\nlook_at = [0, 0, 0]\nheight = @3\n"),
             s,
@@ -267,7 +273,7 @@ fn a_torus_lit_along_its_axis_has_no_speckles() {
         for ((n, hits), (_, _, tile, i)) in normals(&film).into_iter().zip(film.pixels()) {
             if hits > 0.0 {
                 let value = f64::from(tile.mean(i)[1]);
-                assert!((value - n[1].max(0.0)).abs() < 1e-4, "{s}: {value} is not {}", n[1]);
+                assert!((value - n[1].max(0.0)).abs() < 1e-4, "{integrator} at {s}: {value} is not {}", n[1]);
             }
         }
     }
