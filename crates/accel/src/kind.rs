@@ -12,7 +12,7 @@ pub enum AccelKind {
     Bvh8,
     /// The same, built along a Morton curve in a fraction of the time: for scenes that move.
     Bvh8Fast,
-    /// The same with spatial splits, built in two to four times the time: for scenes that are looked at for long.
+    /// The same with spatial splits and reinsertion, built in two to four times the time: for scenes that are looked at for long.
     Bvh8Best,
     /// The same in about a third of the memory, slower to trace.
     Bvh8Compact,
