@@ -1,4 +1,4 @@
-//! The gallery: every scene of the folders `lecture` and `light`, rendered small into `docs/gallery`.
+//! The gallery: every scene of the folders `lecture`, `light` and `matter`, rendered small into `docs/gallery`.
 
 use crate::sh::{self, Outcome, build_kirkas, root};
 use std::fs;
@@ -22,6 +22,10 @@ const fn variant(name: &'static str, scene: &'static str, options: &'static [&'s
 
 const fn light(name: &'static str, options: &'static [&'static str]) -> Picture {
     Picture { name, folder: "light", scene: name, options }
+}
+
+const fn matter(name: &'static str, options: &'static [&'static str]) -> Picture {
+    Picture { name, folder: "matter", scene: name, options }
 }
 
 /// Every picture, in the order of the lecture.
@@ -79,6 +83,8 @@ const PICTURES: &[Picture] = &[
     light("fog", &["--size", "480x300", "--spp", "128"]),
     light("cloud", &["--size", "480x320", "--spp", "16"]),
     light("rainbow", &["--size", "540x300", "--spp", "64"]),
+    matter("models", &["--size", "540x315", "--spp", "64"]),
+    matter("designer", &["--size", "540x225", "--spp", "64"]),
 ];
 
 /// `cargo xtask gallery [NAME...]`
