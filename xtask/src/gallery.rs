@@ -85,6 +85,7 @@ const PICTURES: &[Picture] = &[
     light("rainbow", &["--size", "540x300", "--spp", "64"]),
     matter("models", &["--size", "540x315", "--spp", "64"]),
     matter("designer", &["--size", "540x225", "--spp", "64"]),
+    matter("measured", &["--size", "480x280", "--spp", "96"]),
 ];
 
 /// `cargo xtask gallery [NAME...]`

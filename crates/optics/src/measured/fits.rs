@@ -37,6 +37,14 @@ pub struct Abc {
 }
 
 impl Sgd {
+    /// From its numbers as the published table has them: red, green and blue of each field in turn.
+    pub fn of_numbers(numbers: &[f64]) -> Option<Self> {
+        let t = |i: usize| Some([*numbers.get(3 * i)?, *numbers.get(3 * i + 1)?, *numbers.get(3 * i + 2)?]);
+        let (rho_d, rho_s, alpha, p, f0, f1) = (t(0)?, t(1)?, t(2)?, t(3)?, t(4)?, t(5)?);
+        let (kappa, lambda, c, k, theta0) = (t(6)?, t(7)?, t(8)?, t(9)?, t(10)?);
+        Some(Sgd { rho_d, rho_s, alpha, p, f0, f1, kappa, lambda, c, k, theta0 })
+    }
+
     /// Linear Rec.709, 1/sr, without the cosine; both directions above the surface.
     pub fn value(&self, wo: DVec3, wi: DVec3) -> [f64; 3] {
         let h = (wo + wi).normalize();

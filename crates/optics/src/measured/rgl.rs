@@ -58,13 +58,13 @@ struct Pair {
 }
 
 /// The facets' unit square by angles.
-fn square(theta: f32, phi: f32) -> (f32, f32) {
+pub(super) fn square(theta: f32, phi: f32) -> (f32, f32) {
     let turns = phi / TAU + 0.5;
     ((theta * FRAC_2_PI).max(0.0).sqrt().min(1.0), turns - turns.floor())
 }
 
 /// Angle from the normal and longitude of a vector of any length.
-fn angles(v: Vec3) -> (f32, f32) {
+pub(super) fn angles(v: Vec3) -> (f32, f32) {
     (atan2_f32((v.x * v.x + v.y * v.y).sqrt(), v.z), atan2_f32(v.y, v.x))
 }
 

@@ -3,7 +3,7 @@
 //! What an instrument does by the method of Dupuy & Jakob (2018, section 4), except that the density of facets is given and
 //! not found by power iterations.
 
-use super::rgl::facet;
+use super::rgl::{angles, facet, square};
 use super::tensor_file;
 use super::warp::{Blend, Grid, Warp};
 use crate::fresnel::reflect;
@@ -60,18 +60,23 @@ pub fn write_rgl(grid: &RglGrid, density: impl Fn(Vec3) -> f32, f: impl Fn(Vec3,
                 .collect();
             let warp = Warp::new(n, n, slice.clone());
             visible.extend(slice);
-            let measured: Vec<Vec<f32>> = points(grid.values)
+            let projected = sigma.at(at);
+            let measured: Vec<(Vec<f32>, bool)> = points(grid.values)
                 .map(|u| {
                     let m = warp.sample(&Blend::only(0), u);
                     let o = reflect(i, facet(m, from));
-                    let scale = 4.0 * sigma.at(at) / ndf.at(m);
-                    let o = above(o);
-                    (0..channels).map(|c| f(above(i), o, c) * o.z * scale).collect()
+                    let (i, seen) = (above(i), above(o));
+                    let at_edge = angles(i + seen);
+                    let m = if o.z > 0.0 { m } else { square(at_edge.0, at_edge.1 - from) };
+                    let scale = seen.z * 4.0 * projected / ndf.at(m);
+                    let values = (0..channels).map(|c| f(i, seen, c) * scale).collect();
+                    (values, o.z > 0.0)
                 })
                 .collect();
-            luminance.extend(measured.iter().map(|m| m.iter().sum::<f32>() / channels as f32));
+            let mean = |values: &[f32]| values.iter().sum::<f32>() / channels as f32;
+            luminance.extend(measured.iter().map(|(values, is_above)| if *is_above { mean(values) } else { 0.0 }));
             for c in 0..channels {
-                values.extend(measured.iter().map(|m| m[c]));
+                values.extend(measured.iter().map(|(values, _)| values[c]));
             }
         }
     }
@@ -94,7 +99,7 @@ pub fn write_rgl(grid: &RglGrid, density: impl Fn(Vec3) -> f32, f: impl Fn(Vec3,
     tensor_file::write(&floats, &[("description", b"made by Kirkas"), ("jacobian", &[1])])
 }
 
-/// Below the horizon goes on what is just above it, so that what lies between stays smooth.
+/// Below the horizon goes on what is just above it, so that what lies between stays smooth; none of it is drawn.
 fn above(w: Vec3) -> Vec3 {
     Vec3::new(w.x, w.y, w.z.max(1e-3)).normalize()
 }

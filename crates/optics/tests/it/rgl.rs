@@ -5,6 +5,8 @@ use crate::models::{Case, build, build_with, parse};
 use crate::near;
 use crate::samples::{brushed, data, facets, file, measurements};
 use kirkas_geometry::Vec3;
+use kirkas_geometry::warp::square_to_cosine_hemisphere;
+use kirkas_optics::measured::fits::Sgd;
 use kirkas_optics::measured::rgl::RglTable;
 use kirkas_optics::measured::warp::{Blend, Warp};
 use kirkas_optics::measured::{MeasuredData, RglGrid, tensor_file, write_rgl};
@@ -119,7 +121,7 @@ fn what_was_measured_over_a_part_of_a_turn_holds_all_round() {
         let bsdf = build("measured", &parse(&[("file", Value::from(name))]), 1.0).bsdf;
         let mut random = Random::new(8);
         for _ in 0..500 {
-            let mut w = || kirkas_geometry::warp::square_to_cosine_hemisphere(random.pair());
+            let mut w = || square_to_cosine_hemisphere(random.pair());
             let (a, b) = (w(), w());
             let f = bsdf.eval(a, b, LobeSet::ALL, Mode::Radiance)[0];
             for &(x, y) in signs {
@@ -272,4 +274,32 @@ fn what_is_wrong_is_said() {
     assert_eq!(RglTable::read(&newer, ColorMode::Rgb).unwrap_err(), "it is of version 2.0; only 1.0 is known");
     let foreign = MeasuredData::read(&file("grey.binary")[1..], ColorMode::Rgb).unwrap_err();
     assert_eq!(foreign, "it is neither a MERL `.binary` nor an RGL `.bsdf`");
+}
+
+/// The files of the gallery's wall are their fits, as nearly as so few measurements tell.
+#[test]
+fn the_files_beside_the_scenes_are_their_fits() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/matter/measured");
+    let table = std::fs::read_to_string(format!("{folder}/fits.tsv")).unwrap();
+    let lines: Vec<&str> = table.lines().filter(|l| !l.starts_with('#')).skip(1).collect();
+    assert_eq!(lines.len(), 8);
+    for line in lines {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let numbers: Vec<f64> = cells[2..].iter().map(|x| x.parse().unwrap()).collect();
+        let fit = Sgd::of_numbers(&numbers).unwrap();
+        let bytes = std::fs::read(format!("{folder}/{}.bsdf", cells[0])).unwrap();
+        let data = MeasuredData::read(&bytes, ColorMode::Rgb).unwrap();
+        let mut random = Random::new(12);
+        let mut off: Vec<f64> = (0..1000)
+            .map(|_| {
+                let mut w = || square_to_cosine_hemisphere(random.pair());
+                let (wo, wi) = (w(), w());
+                let expected = fit.value(wo.as_dvec3(), wi.as_dvec3())[1];
+                (f64::from(data.value(wo, wi, &Lanes::RGB)[1]) - expected).abs() / expected.max(0.02)
+            })
+            .collect();
+        off.sort_by(f64::total_cmp);
+        println!("{}: median {:.3}, 90 % below {:.3}", cells[0], off[500], off[900]);
+        assert!(off[500] < 0.02 && off[900] < 0.15, "{}: {} {}", cells[0], off[500], off[900]);
+    }
 }

@@ -119,20 +119,7 @@ pub fn published_fits() -> Option<BTreeMap<String, (Sgd, Abc)>> {
     let (sgd, abc) = (rows("sgd.tsv", 2), rows("abc.tsv", 1));
     let three = |v: &[f64], i: usize| [v[3 * i], v[3 * i + 1], v[3 * i + 2]];
     let both = sgd.into_iter().map(|(name, v)| {
-        let t = |i| three(&v, i);
-        let sgd = Sgd {
-            rho_d: t(0),
-            rho_s: t(1),
-            alpha: t(2),
-            p: t(3),
-            f0: t(4),
-            f1: t(5),
-            kappa: t(6),
-            lambda: t(7),
-            c: t(8),
-            k: t(9),
-            theta0: t(10),
-        };
+        let sgd = Sgd::of_numbers(&v).expect("all its numbers");
         let v = &abc[&name];
         let abc = Abc { k_d: three(v, 0), a: three(v, 1), b: v[6], c: v[7], ior: v[8] };
         (name, (sgd, abc))
