@@ -12,9 +12,11 @@ pub fn owen_sobol_2d(index: u32, seed: u64) -> (f32, f32) {
     let s = mix64(seed);
     let shuffled = nested_uniform_shuffle(index, s as u32);
     let t = mix64(s ^ 0x5851_f42d_4c95_7f2d);
-    let x = owen_scramble_reversed(shuffled, (s >> 32) as u32);
-    let y = owen_scramble_reversed(sobol_second_reversed(shuffled), t as u32);
-    (unit_f32(x), unit_f32(y))
+    let x = laine_karras(shuffled, (s >> 32) as u32);
+    let y = laine_karras(sobol_second_reversed(shuffled), t as u32);
+    // Both back to normal order at once.
+    let both = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+    (unit_f32(both as u32), unit_f32((both >> 32) as u32))
 }
 
 /// Point `index` of the one-dimensional sequence that `seed` names, in `[0, 1)`.

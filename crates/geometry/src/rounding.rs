@@ -19,22 +19,23 @@ pub const fn gamma(n: u32) -> f32 {
 pub fn offset_origin(point: DVec3, error: DVec3, normal: DVec3, direction: DVec3) -> Vec3 {
     let distance = normal.abs().dot(error);
     let offset = if direction.dot(normal) < 0.0 { normal * -distance } else { normal * distance };
-    let moved = point + offset;
-    Vec3::new(away(moved.x, offset.x), away(moved.y, offset.y), away(moved.z, offset.z))
+    let (moved, offset) = ((point + offset).to_array(), offset.to_array());
+    Vec3::from_array(core::array::from_fn(|axis| away(moved[axis], offset[axis])))
 }
 
 /// `x` rounded to f32 and one further towards the side that `offset` goes to: away from the surface, never towards it. Without
 /// branches, which no one could predict.
-#[inline]
+#[inline(always)]
 fn away(x: f64, offset: f64) -> f32 {
     let f = x as f32;
-    // Away from zero the next number has the next bits, for either sign; from zero it is the least of its sign.
     let bits = f.to_bits();
-    let is_outward = (offset < 0.0) == f.is_sign_negative();
-    let step = if is_outward { 1 } else { u32::MAX };
-    let least = if offset < 0.0 { 0x8000_0001 } else { 1 };
-    let next = if f == 0.0 { least } else { bits.wrapping_add(step) };
-    f32::from_bits(if offset == 0.0 || !f.is_finite() { bits } else { next })
+    // Away from zero the next number has the next bits, for either sign; from zero it is the least of its sign.
+    let is_down = (offset.to_bits() >> 32) as i32 >> 31;
+    let step = (is_down ^ bits as i32 >> 31) | 1;
+    let least = is_down as u32 & 0x8000_0000 | 1;
+    let next = if bits << 1 == 0 { least } else { bits.wrapping_add_signed(step) };
+    let stays = (offset == 0.0) | (bits & 0x7f80_0000 == 0x7f80_0000);
+    f32::from_bits(if stays { bits } else { next })
 }
 
 #[cfg(test)]

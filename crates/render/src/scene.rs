@@ -225,7 +225,8 @@ impl Scene {
         let (mut material, mut object) = (part.material, part.object);
         let mut point;
         if hit.instance.is_world() {
-            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, ray);
+            let detail = self.materials[material as usize].detail;
+            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, ray, detail);
         } else {
             // Ask in the instance's space, and bring the answer back.
             let instance = &self.instances[hit.instance.outermost() as usize];
@@ -238,7 +239,10 @@ impl Scene {
                 direction: to_part.transform_vector3(ray.direction.as_dvec3()).as_vec3(),
                 ..*ray
             };
-            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, &local);
+            material = instance.material.unwrap_or(material);
+            object = instance.object.unwrap_or(object);
+            let detail = self.materials[material as usize].detail;
+            point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, &local, detail);
             // The ray that leaves is rounded once more on its way into the instance.
             let error = point.error + point.position.abs() * f64::from(gamma(2));
             let a = &to_world.matrix3;
@@ -247,8 +251,6 @@ impl Scene {
             point.normal = transform_normal(&to_part, point.normal).normalize();
             point.shading_normal = transform_normal(&to_part, point.shading_normal).normalize();
             point.tangent = to_world.transform_vector3(point.tangent);
-            material = instance.material.unwrap_or(material);
-            object = instance.object.unwrap_or(object);
         }
         // Half an ulp for rounding to f32, and one more for what the next intersection loses.
         point.error += point.position.abs() * f64::from(gamma(2));
@@ -309,7 +311,7 @@ impl Scene {
     pub fn emitted(&self, lanes: &Lanes, hit: &SurfaceHit) -> Light {
         match &self.material(hit).emission {
             Some(e) if hit.is_front || e.two_sided => {
-                e.radiance(lanes, &self.textures, &hit.texture, self.area_scale(hit))
+                e.radiance(lanes, &self.textures, &hit.texture, || self.area_scale(hit))
             }
             _ => Light::BLACK,
         }
@@ -364,7 +366,7 @@ impl Scene {
     ) -> Option<LightSample> {
         let light = &self.lights[self.pieces.light(number) as usize];
         match (&light.lamp, self.pieces.is_empty()) {
-            (Lamp::Area(l), false) => match self.pieces.sample(number, l, u) {
+            (Lamp::Area(l), false) => match self.pieces.sample(number, l, u, self.materials[l.material as usize].detail) {
                 Some(s) => l.sample_at(s, lanes, (&self.materials, &self.textures), from, time),
                 None => self.sample_light(lanes, light, from, time, u),
             },

@@ -5,7 +5,7 @@ use super::emit::EmittedRay;
 use super::tree::LightBounds;
 use super::{Cone, LightSample, Target};
 use crate::materials::{Emission, Material};
-use crate::shapes::{AreaSample, Surface};
+use crate::shapes::{AreaSample, Detail, Surface};
 use crate::textures::{TexturePoint, Textures};
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::rounding::{gamma, offset_origin};
@@ -46,9 +46,20 @@ impl AreaLight {
         time: f64,
         u: (f32, f32),
     ) -> Option<LightSample> {
-        let map = self.placement.as_ref().map(|p| p.at(time));
-        let (s, per_solid_angle) = self.choose(map.as_ref(), from, u)?;
-        self.seen(&s, per_solid_angle, lanes, (materials, textures), from)
+        let detail = materials[self.material as usize].detail;
+        let seen = |s: &AreaSample, pdf| self.seen(s, pdf, lanes, (materials, textures), from);
+        let Some(placement) = &self.placement else {
+            return match self.surface.sample_toward(from, u, detail) {
+                Some((s, pdf)) => seen(&s, Some(pdf)),
+                None => seen(&self.surface.sample_area(u, detail)?, None),
+            };
+        };
+        let m = placement.at(time);
+        match self.surface.sample_toward(m.inverse().transform_point3(from), u, detail) {
+            // Solid angles survive turning and even scaling only.
+            Some((s, pdf)) if is_similarity(&m) => seen(&placed(s, &m), Some(pdf)),
+            _ => seen(&placed(self.surface.sample_area(u, detail)?, &m), None),
+        }
     }
 
     /// The light of a point of the surface, chosen in part space by area alone.
@@ -90,7 +101,7 @@ impl AreaLight {
         let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
         // The shadow ray ends short of the lamp, so the lamp's own opacity counts here.
         let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
-        let radiance = emission.radiance(lanes, textures, &at, self.per_power()) * opacity;
+        let radiance = emission.radiance(lanes, textures, &at, || self.per_power()) * opacity;
         let target = Target {
             position: s.position,
             error: s.position.abs() * f64::from(gamma(4)) + from.abs() * f64::from(gamma(2)),
@@ -115,7 +126,7 @@ impl AreaLight {
     ) -> Option<EmittedRay> {
         let material = &materials[self.material as usize];
         let emission = material.emission.as_ref()?;
-        let mut s = self.surface.sample_area(u)?;
+        let mut s = self.surface.sample_area(u, material.detail)?;
         if let Some(m) = self.placement.as_ref().map(|p| p.at(time)) {
             s = placed(s, &m);
         }
@@ -132,7 +143,7 @@ impl AreaLight {
         let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let power =
-            emission.radiance(lanes, textures, &at, self.per_power()) * (opacity * (PI * sides / s.pdf_area) as f32);
+            emission.radiance(lanes, textures, &at, || self.per_power()) * (opacity * (PI * sides / s.pdf_area) as f32);
         let error = s.position.abs() * f64::from(gamma(4));
         let origin = offset_origin(s.position, error, s.normal, direction);
         (direction.dot(normal) > 0.0 && power.is_finite()).then(|| EmittedRay::new(origin, direction, time, power))
@@ -200,7 +211,7 @@ impl AreaLight {
         let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let count = if emission.is_textured() { TEXTURE_PROBES } else { 1 };
-        let radiance = |i| Some(self.glow(emission, textures, &self.surface.sample_area(owen_sobol_2d(i, 0))?));
+        let radiance = |i| Some(self.glow(emission, textures, &self.surface.sample_area(owen_sobol_2d(i, 0), Detail::Texture)?));
         let mean = (0..count).filter_map(radiance).sum::<f64>() / f64::from(count);
         PI * self.area * sides * mean
     }
@@ -214,7 +225,7 @@ impl AreaLight {
     pub fn glow_of_facet(&self, facet: u32, materials: &[Material], textures: &Textures) -> f64 {
         const PROBES: u32 = 4;
         let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
-        let samples = (0..PROBES).filter_map(|i| self.surface.sample_facet(facet, owen_sobol_2d(i, 0)));
+        let samples = (0..PROBES).filter_map(|i| self.surface.sample_facet(facet, owen_sobol_2d(i, 0), Detail::Texture));
         samples.map(|s| self.glow(emission, textures, &s)).sum::<f64>() / f64::from(PROBES)
     }
 
@@ -222,24 +233,7 @@ impl AreaLight {
     fn glow(&self, emission: &Emission, textures: &Textures, s: &AreaSample) -> f64 {
         let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
         let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
-        emission.radiance(&Lanes::RGB, textures, &at, self.per_power()).sum()
-    }
-
-    /// A point in the world with its density by area, and by solid angle if the shape sampled that.
-    fn choose(&self, map: Option<&DAffine3>, from: DVec3, u: (f32, f32)) -> Option<(AreaSample, Option<f64>)> {
-        let Some(m) = map else {
-            return match self.surface.sample_toward(from, u) {
-                Some((s, pdf)) => Some((s, Some(pdf))),
-                None => self.surface.sample_area(u).map(|s| (s, None)),
-            };
-        };
-        let inverse = m.inverse();
-        let (s, pdf) = match self.surface.sample_toward(inverse.transform_point3(from), u) {
-            // Solid angles survive turning and even scaling only.
-            Some((s, pdf)) if is_similarity(m) => (s, Some(pdf)),
-            _ => (self.surface.sample_area(u)?, None),
-        };
-        Some((placed(s, m), pdf))
+        emission.radiance(&Lanes::RGB, textures, &at, || self.per_power()).sum()
     }
 }
 

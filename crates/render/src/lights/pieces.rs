@@ -6,7 +6,7 @@
 
 use super::{AreaLight, Lamp, LightEntry, pick::Reach};
 use crate::materials::Material;
-use crate::shapes::{AreaSample, Surface};
+use crate::shapes::{AreaSample, Detail, Surface};
 use crate::textures::Textures;
 use kirkas_geometry::{Bounds3, DVec3};
 use std::collections::BTreeMap;
@@ -101,7 +101,7 @@ impl Pieces {
     }
 
     /// A point of a piece, evenly by area, in part space; `None` for whole lights.
-    pub fn sample(&self, number: u32, lamp: &AreaLight, u: (f32, f32)) -> Option<AreaSample> {
+    pub fn sample(&self, number: u32, lamp: &AreaLight, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
         let (runs, run) = self.run(number)?;
         let range = runs.range(run);
         let sums = &runs.sums[range.clone()];
@@ -110,7 +110,7 @@ impl Pieces {
         let i = sums.partition_point(|&s| s <= target).min(sums.len() - 1);
         let before = if i == 0 { 0.0 } else { sums[i - 1] };
         let rest = ((target - before) / (sums[i] - before)).clamp(0.0, 1.0);
-        let s = lamp.surface.sample_facet(runs.facets[range.start + i], (rest, u.1))?;
+        let s = lamp.surface.sample_facet(runs.facets[range.start + i], (rest, u.1), detail)?;
         Some(AreaSample { pdf_area: 1.0 / f64::from(total), ..s })
     }
 
@@ -223,13 +223,13 @@ mod tests {
     struct Squares(u32);
 
     impl Surface for Squares {
-        fn point(&self, _: u32, _: f32, _: f32, _: f32, _: &Ray) -> SurfacePoint {
+        fn point(&self, _: u32, _: f32, _: f32, _: f32, _: &Ray, _: Detail) -> SurfacePoint {
             unreachable!("no ray is traced")
         }
         fn area(&self) -> Option<f64> {
             None
         }
-        fn sample_area(&self, _: (f32, f32)) -> Option<AreaSample> {
+        fn sample_area(&self, _: (f32, f32), _: Detail) -> Option<AreaSample> {
             None
         }
         fn bounds(&self) -> Bounds3 {

@@ -51,6 +51,14 @@ impl LightTree {
         }
     }
 
+    /// The light of a tree that holds no other.
+    pub fn only(&self) -> Option<u32> {
+        match self.nodes[0].link {
+            Link::Light(light) => Some(light),
+            Link::Children(_) => None,
+        }
+    }
+
     /// How much all lights together could send to a point, W per square unit; above 0 if any can send anything.
     pub fn importance(&self, point: DVec3, normal: DVec3) -> f32 {
         self.nodes[0].importance(point.as_vec3(), normal.as_vec3())

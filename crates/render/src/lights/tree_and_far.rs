@@ -35,10 +35,13 @@ impl TreeAndFar {
     }
 
     pub(super) fn pick(&self, point: DVec3, normal: DVec3, u: f32) -> Option<(u32, f32)> {
-        let u = more_digits(u, point);
         if let (Some(tree), []) = (&self.tree, self.far.as_slice()) {
-            return Some(tree.pick(point, normal, u));
+            return Some(match tree.only() {
+                Some(light) => (light, 1.0),
+                None => tree.pick(point, normal, more_digits(u, point)),
+            });
         }
+        let u = more_digits(u, point);
         let shares = self.shares(point, normal);
         if !shares.any() {
             return None;

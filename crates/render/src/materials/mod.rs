@@ -2,6 +2,7 @@
 //! their tables live in `optics`; here textures become values.
 
 use crate::lights::units::EFFICACY;
+use crate::shapes::Detail;
 use crate::textures::{ColorSource, NumberSource, TextureNames, TexturePoint, Textures};
 use kirkas_optics::bsdf::texture_rows;
 use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Medium, Palette, Spectrum};
@@ -35,6 +36,8 @@ pub struct Material {
     /// Rays go through its surface as if it were not there.
     pub is_hull: bool,
     scales_radiance: bool,
+    /// What it has to know of a point.
+    pub detail: Detail,
 }
 
 /// One texture row of the model.
@@ -122,14 +125,20 @@ impl Material {
         let rows: Vec<Row> =
             texture_rows(params.spec()).map(|spec| Row::new(spec, source(spec), params, palette)).collect();
         debug_assert!(rows.len() <= MOST_ROWS);
+        let alpha = names.number(params, "alpha");
+        let emission = (params.spec().name == "emitter").then(|| Emission::new(params, names, palette));
+        let is_textured = rows.iter().any(|row| matches!(row.value, Value::Texture(_)))
+            || matches!(alpha, NumberSource::Texture(_))
+            || emission.as_ref().is_some_and(Emission::is_textured);
         let medium = model.medium().cloned();
         let is_constant =
             params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,
-            alpha: names.number(params, "alpha"),
-            emission: (params.spec().name == "emitter").then(|| Emission::new(params, names, palette)),
+            alpha,
+            emission,
+            detail: if is_textured { Detail::Texture } else { Detail::Place },
             scales_radiance: !is_constant,
             medium,
             interior: None,
@@ -214,7 +223,13 @@ impl Emission {
     }
 
     /// Radiance at a point; `per_power` is 1 / (pi area) of the whole lamp.
-    pub fn radiance(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint, per_power: f64) -> Light {
+    pub fn radiance(
+        &self,
+        lanes: &Lanes,
+        textures: &Textures,
+        at: &TexturePoint,
+        per_power: impl FnOnce() -> f64,
+    ) -> Light {
         let color = match &self.radiance {
             Radiance::Constant(spectrum) => return spectrum.scaled_at(lanes, self.scale(spectrum.rgb(), per_power)),
             Radiance::Texture(number) => textures.color(ColorSource::Texture(*number), at),
@@ -224,7 +239,10 @@ impl Emission {
     }
 
     /// What a colour is multiplied by to become radiance.
-    fn scale(&self, color: [f32; 3], per_power: f64) -> f64 {
+    fn scale(&self, color: [f32; 3], per_power: impl FnOnce() -> f64) -> f64 {
+        if self.unit == Unit::Radiance {
+            return self.intensity;
+        }
         let color = color.map(f64::from);
         let luminance = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
         let mean = (color[0] + color[1] + color[2]) / 3.0;
@@ -233,8 +251,8 @@ impl Emission {
         let scale = match self.unit {
             Unit::Radiance => 1.0,
             Unit::Luminance => over(1.0, luminance * EFFICACY),
-            Unit::Watt => over(per_power * sides, mean),
-            Unit::Lumen => over(per_power * sides, luminance * EFFICACY),
+            Unit::Watt => over(per_power() * sides, mean),
+            Unit::Lumen => over(per_power() * sides, luminance * EFFICACY),
         };
         scale * self.intensity
     }

@@ -3,7 +3,7 @@
 //! Everything is f64, so that a hit is as exact as its f32 ray, and the point found for it lies on the surface to f64
 //! rounding. What a ray then must stay clear of is only the rounding of its own f32 origin.
 
-use super::{AreaSample, Part, ShapeInput, Surface, SurfacePoint};
+use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
 use crate::lights::Cone;
 use kirkas_accel::{Shape, UserShape};
 use kirkas_geometry::rounding::gamma;
@@ -109,6 +109,8 @@ pub struct Placed<C> {
     object_from_canonical: DAffine3,
     bounds: Bounds3,
     area: Option<f64>,
+    /// The normal, if it is the same everywhere.
+    flat_normal: Option<DVec3>,
     /// Bound on f64 rounding, in scene units.
     slack: f64,
 }
@@ -139,15 +141,19 @@ impl<C: Canonical> Placed<C> {
         let reach = |v: DVec3| if v.is_finite() { v.abs().max_element() } else { 0.0 };
         let size =
             reach(part_from_canonical.translation).max(reach(bounds.min.as_dvec3())).max(reach(bounds.max.as_dvec3()));
-        Ok(Placed {
+        let mut placed = Placed {
             area: shape.area(&part_from_canonical.matrix3).filter(|a| a.is_finite() && *a > 0.0),
             shape,
             part_from_canonical,
             canonical_from_part: part_from_canonical.matrix3.inverse(),
             object_from_canonical,
             bounds,
+            flat_normal: None,
             slack: F64_SLACK * size,
-        })
+        };
+        let is_in_plane = placed.shape.support(DVec3::Z) == 0.0 && placed.shape.support(DVec3::NEG_Z) == 0.0;
+        placed.flat_normal = is_in_plane.then(|| placed.normal(&placed.shape.local(DVec3::ZERO, 0)));
+        Ok(placed)
     }
 
     fn canonical_point(&self, p: DVec3) -> DVec3 {
@@ -155,7 +161,17 @@ impl<C: Canonical> Placed<C> {
         self.canonical_from_part * (p - self.part_from_canonical.translation)
     }
 
+    fn object_position(&self, canonical: DVec3, detail: Detail) -> DVec3 {
+        match detail {
+            Detail::Place => DVec3::ZERO,
+            Detail::Texture => self.object_from_canonical.transform_point3(canonical),
+        }
+    }
+
     fn normal(&self, local: &Local) -> DVec3 {
+        if let Some(normal) = self.flat_normal {
+            return normal;
+        }
         let inverse = DAffine3 { matrix3: self.canonical_from_part, translation: DVec3::ZERO };
         transform_normal(&inverse, local.normal).normalize()
     }
@@ -206,7 +222,7 @@ impl<C: Canonical> UserShape for Placed<C> {
 }
 
 impl<C: Canonical> Surface for Placed<C> {
-    fn point(&self, _primitive: u32, u: f32, _v: f32, t: f32, ray: &Ray) -> SurfacePoint {
+    fn point(&self, _primitive: u32, u: f32, _v: f32, t: f32, ray: &Ray, detail: Detail) -> SurfacePoint {
         let face = u as u8;
         let near = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
         let canonical = self.shape.project(self.canonical_point(near), face);
@@ -221,7 +237,7 @@ impl<C: Canonical> Surface for Placed<C> {
             shading_normal: normal,
             uv: local.uv.map(|x| x as f32),
             tangent: self.part_from_canonical.matrix3 * local.tangent,
-            object_position: self.object_from_canonical.transform_point3(canonical),
+            object_position: self.object_position(canonical, detail),
         }
     }
 
@@ -229,7 +245,7 @@ impl<C: Canonical> Surface for Placed<C> {
         self.area
     }
 
-    fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample> {
+    fn sample_area(&self, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
         let area = self.area?;
         let (p, face) = self.shape.sample(&self.part_from_canonical.matrix3, (f64::from(u.0), f64::from(u.1)));
         let local = self.shape.local(p, face);
@@ -237,7 +253,7 @@ impl<C: Canonical> Surface for Placed<C> {
             position: self.part_from_canonical.transform_point3(p),
             normal: self.normal(&local),
             uv: local.uv.map(|x| x as f32),
-            object_position: self.object_from_canonical.transform_point3(p),
+            object_position: self.object_position(p, detail),
             pdf_area: 1.0 / area,
         })
     }
@@ -247,8 +263,7 @@ impl<C: Canonical> Surface for Placed<C> {
     }
 
     fn normals(&self) -> Cone {
-        let is_in_plane = self.shape.support(DVec3::Z) == 0.0 && self.shape.support(DVec3::NEG_Z) == 0.0;
-        if is_in_plane { Cone::of(self.normal(&self.shape.local(DVec3::ZERO, 0))) } else { Cone::ALL }
+        self.flat_normal.map_or(Cone::ALL, Cone::of)
     }
 }
 

@@ -91,6 +91,15 @@ pub struct Part {
     pub own_material: Option<String>,
 }
 
+/// How much is asked of a point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Where it is and which way it faces. Nobody looks at texture coordinates and object space: they are left 0.
+    Place,
+    /// All of it.
+    Texture,
+}
+
 /// What is known of a surface at a hit, in part space.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
@@ -140,13 +149,13 @@ pub struct Facet {
 /// Answers shading's questions about one part.
 pub trait Surface: Send + Sync {
     /// The surface at a hit. `ray` is in part space.
-    fn point(&self, primitive: u32, u: f32, v: f32, t: f32, ray: &Ray) -> SurfacePoint;
+    fn point(&self, primitive: u32, u: f32, v: f32, t: f32, ray: &Ray, detail: Detail) -> SurfacePoint;
 
     /// Total area in part space; `None` if it cannot be a light (infinite or not samplable).
     fn area(&self) -> Option<f64>;
 
     /// A point, uniform by area, for a light. `u` in the unit square.
-    fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample>;
+    fn sample_area(&self, u: (f32, f32), detail: Detail) -> Option<AreaSample>;
 
     /// Flat facets, by number as hits name their primitives, that can be sampled one by one; 0 where there are none.
     fn facet_count(&self) -> u32 {
@@ -159,13 +168,13 @@ pub trait Surface: Send + Sync {
     }
 
     /// A point of it, uniform by area.
-    fn sample_facet(&self, _facet: u32, _u: (f32, f32)) -> Option<AreaSample> {
+    fn sample_facet(&self, _facet: u32, _u: (f32, f32), _detail: Detail) -> Option<AreaSample> {
         None
     }
 
     /// A point as seen from `from`, with its density per solid angle there; `None` where the shape has nothing better
     /// than [`Surface::sample_area`] (or `from` is inside).
-    fn sample_toward(&self, _from: DVec3, _u: (f32, f32)) -> Option<(AreaSample, f64)> {
+    fn sample_toward(&self, _from: DVec3, _u: (f32, f32), _detail: Detail) -> Option<(AreaSample, f64)> {
         None
     }
 

@@ -2,7 +2,7 @@
 
 use super::analytic::{curved_error, degenerate, similarity_scale};
 use super::sphere::{sphere_tangent, sphere_uv, uniform_direction};
-use super::{AreaSample, Part, ShapeInput, Surface, SurfacePoint};
+use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
 use core::f64::consts::{PI, TAU};
 use kirkas_accel::{Shape, Sphere};
 use kirkas_geometry::elementary::sin_cos;
@@ -64,14 +64,16 @@ impl SphereSet {
         })
     }
 
-    fn uv(&self, normal: DVec3) -> ([f32; 2], DVec3) {
-        let n = (self.object_from_part.matrix3 * normal).normalize();
-        (sphere_uv(n).map(|x| x as f32), n)
+    fn normal_in_object(&self, normal: DVec3) -> DVec3 {
+        (self.object_from_part.matrix3 * normal).normalize()
     }
 
-    fn area_sample(&self, position: DVec3, normal: DVec3, pdf_area: f64) -> AreaSample {
-        let object_position = self.object_from_part.transform_point3(position);
-        AreaSample { position, normal, uv: self.uv(normal).0, object_position, pdf_area }
+    fn area_sample(&self, position: DVec3, normal: DVec3, pdf_area: f64, detail: Detail) -> AreaSample {
+        let (uv, object_position) = match detail {
+            Detail::Place => ([0.0; 2], DVec3::ZERO),
+            Detail::Texture => (uv(self.normal_in_object(normal)), self.object_from_part.transform_point3(position)),
+        };
+        AreaSample { position, normal, uv, object_position, pdf_area }
     }
 
     /// The cone in which the only sphere is seen from `from`; `None` from within, and from its own surface, where rounding would
@@ -106,13 +108,13 @@ impl Cone {
 }
 
 impl Surface for SphereSet {
-    fn point(&self, primitive: u32, _u: f32, _v: f32, t: f32, ray: &Ray) -> SurfacePoint {
+    fn point(&self, primitive: u32, _u: f32, _v: f32, t: f32, ray: &Ray, detail: Detail) -> SurfacePoint {
         let sphere = &self.spheres[primitive as usize];
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
         let near = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
         let normal = (near - center).try_normalize().unwrap_or(DVec3::Y);
         let position = center + normal * radius;
-        let (uv, n) = self.uv(normal);
+        let n = self.normal_in_object(normal);
         // The second term: roundings of the intersection in f64.
         let error = curved_error(position) + 1e-14 * (center.abs().max_element() + radius);
         SurfacePoint {
@@ -120,9 +122,12 @@ impl Surface for SphereSet {
             error,
             normal,
             shading_normal: normal,
-            uv,
+            uv: if detail == Detail::Texture { uv(n) } else { [0.0; 2] },
             tangent: self.part_turn * sphere_tangent(n) * radius,
-            object_position: self.object_from_part.transform_point3(position),
+            object_position: match detail {
+                Detail::Place => DVec3::ZERO,
+                Detail::Texture => self.object_from_part.transform_point3(position),
+            },
         }
     }
 
@@ -130,7 +135,7 @@ impl Surface for SphereSet {
         self.cumulative_area().last().copied()
     }
 
-    fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample> {
+    fn sample_area(&self, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
         let areas = self.cumulative_area();
         let total = *areas.last()?;
         let target = f64::from(u.0) * total;
@@ -140,10 +145,10 @@ impl Surface for SphereSet {
         let sphere = &self.spheres[i];
         let normal = uniform_direction((rest, f64::from(u.1)));
         let position = sphere.center.as_dvec3() + normal * f64::from(sphere.radius);
-        Some(self.area_sample(position, normal, 1.0 / total))
+        Some(self.area_sample(position, normal, 1.0 / total, detail))
     }
 
-    fn sample_toward(&self, from: DVec3, u: (f32, f32)) -> Option<(AreaSample, f64)> {
+    fn sample_toward(&self, from: DVec3, u: (f32, f32), detail: Detail) -> Option<(AreaSample, f64)> {
         let cone = self.cone(from)?;
 
         // Choose a direction in the cone, uniform by solid angle.
@@ -163,7 +168,7 @@ impl Surface for SphereSet {
         let to_point = position - from;
         let cosine = (-normal.dot(to_point)).max(0.0) / to_point.length();
         let pdf_area = cone.pdf() * cosine / to_point.length_squared();
-        Some((self.area_sample(position, normal, pdf_area), cone.pdf()))
+        Some((self.area_sample(position, normal, pdf_area, detail), cone.pdf()))
     }
 
     fn pdf_toward(&self, from: DVec3) -> Option<f64> {
@@ -173,6 +178,10 @@ impl Surface for SphereSet {
     fn bounds(&self) -> Bounds3 {
         self.bounds
     }
+}
+
+fn uv(normal_in_object: DVec3) -> [f32; 2] {
+    sphere_uv(normal_in_object).map(|x| x as f32)
 }
 
 fn uneven(input: &ShapeInput) -> Diagnostic {

@@ -1,7 +1,7 @@
 //! The surface of triangles over shared vertices, in part space.
 
 use super::analytic::flat_error;
-use super::{AreaSample, Facet, Part, Surface, SurfacePoint};
+use super::{AreaSample, Detail, Facet, Part, Surface, SurfacePoint};
 use crate::lights::Cone;
 use kirkas_accel::Shape;
 use kirkas_geometry::warp::square_to_uniform_triangle;
@@ -67,6 +67,13 @@ impl TriangleSurface {
         (mix(n, weights) * sign).try_normalize().unwrap_or(normal)
     }
 
+    fn object_position(&self, position: DVec3, detail: Detail) -> DVec3 {
+        match detail {
+            Detail::Place => DVec3::ZERO,
+            Detail::Texture => self.mesh.object_from_part.transform_point3(position),
+        }
+    }
+
     fn cumulative_area(&self) -> &[f64] {
         self.cumulative_area.get_or_init(|| {
             let mut sum = 0.0;
@@ -78,6 +85,10 @@ impl TriangleSurface {
 /// Weighted sum of three points.
 fn mix(p: [DVec3; 3], w: [f64; 3]) -> DVec3 {
     p[0] * w[0] + p[1] * w[1] + p[2] * w[2]
+}
+
+fn uv(uvs: [DVec2; 3], w: [f64; 3]) -> [f32; 2] {
+    (uvs[0] * w[0] + uvs[1] * w[1] + uvs[2] * w[2]).as_vec2().to_array()
 }
 
 fn area([a, b, c]: [DVec3; 3]) -> f64 {
@@ -104,7 +115,7 @@ fn tangent(p: [DVec3; 3], uv: [DVec2; 3]) -> DVec3 {
 }
 
 impl Surface for TriangleSurface {
-    fn point(&self, primitive: u32, u: f32, v: f32, _t: f32, _ray: &Ray) -> SurfacePoint {
+    fn point(&self, primitive: u32, u: f32, v: f32, _t: f32, _ray: &Ray, detail: Detail) -> SurfacePoint {
         let (u, v) = (f64::from(u), f64::from(v));
         let weights = [1.0 - u - v, u, v];
         let (corners, uvs) = (self.corners(primitive), self.uvs(primitive));
@@ -117,9 +128,9 @@ impl Surface for TriangleSurface {
             error: flat_error(position) + 1e-14 * largest,
             normal,
             shading_normal: self.shading_normal(primitive, weights, normal),
-            uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
+            uv: if detail == Detail::Texture { uv(uvs, weights) } else { [0.0; 2] },
             tangent: self.tangent(corners, uvs),
-            object_position: self.mesh.object_from_part.transform_point3(position),
+            object_position: self.object_position(position, detail),
         }
     }
 
@@ -127,14 +138,14 @@ impl Surface for TriangleSurface {
         self.cumulative_area().last().copied().filter(|a| *a > 0.0 && a.is_finite())
     }
 
-    fn sample_area(&self, u: (f32, f32)) -> Option<AreaSample> {
+    fn sample_area(&self, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
         let total = self.area()?;
         let areas = self.cumulative_area();
         let target = f64::from(u.0) * total;
         let i = areas.partition_point(|&a| a <= target).min(areas.len() - 1);
         let before = if i == 0 { 0.0 } else { areas[i - 1] };
         let rest = ((target - before) / (areas[i] - before)).clamp(0.0, 1.0);
-        let s = self.sample_facet(i as u32, (rest as f32, u.1))?;
+        let s = self.sample_facet(i as u32, (rest as f32, u.1), detail)?;
         Some(AreaSample { pdf_area: 1.0 / total, ..s })
     }
 
@@ -148,17 +159,17 @@ impl Surface for TriangleSurface {
         Facet { bounds, normal: normal(corners), area: area(corners) }
     }
 
-    fn sample_facet(&self, facet: u32, u: (f32, f32)) -> Option<AreaSample> {
+    fn sample_facet(&self, facet: u32, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
         let (b1, b2) = square_to_uniform_triangle(u);
         let (b1, b2) = (f64::from(b1), f64::from(b2));
         let weights = [1.0 - b1 - b2, b1, b2];
-        let (corners, uvs) = (self.corners(facet), self.uvs(facet));
+        let corners = self.corners(facet);
         let position = mix(corners, weights);
         Some(AreaSample {
             position,
             normal: normal(corners),
-            uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).as_vec2().to_array(),
-            object_position: self.mesh.object_from_part.transform_point3(position),
+            uv: if detail == Detail::Texture { uv(self.uvs(facet), weights) } else { [0.0; 2] },
+            object_position: self.object_position(position, detail),
             pdf_area: 1.0 / area(corners),
         })
     }

@@ -4,7 +4,7 @@
 use crate::shapes_cases::{Case, Random, Target, cases, is_refused, similarity, transforms};
 use kirkas_accel::AccelKind;
 use kirkas_geometry::{DAffine3, DVec3, Ray};
-use kirkas_render::shapes::Surface;
+use kirkas_render::shapes::{Detail, Surface};
 use kirkas_scene::Map;
 use std::f64::consts::{PI, TAU};
 
@@ -57,7 +57,7 @@ fn sampled_points_lie_on_the_surface_and_are_uniform_by_area() {
             let areas: Option<Vec<f64>> = target.parts.iter().map(|p| p.surface.area()).collect();
             let Some(areas) = areas else {
                 let p = &target.parts[0].surface;
-                assert!(p.sample_area((0.5, 0.5)).is_none());
+                assert!(p.sample_area((0.5, 0.5), Detail::Texture).is_none());
                 let curved = matches!(case.type_name, "sphere" | "cylinder" | "cone" | "torus");
                 assert!(case.type_name == "plane" || curved && name == "uneven", "{} {name}", case.label());
                 continue;
@@ -96,7 +96,7 @@ fn check_area_and_moments(case: &Case, name: &str, transform: &DAffine3, target:
     let mut by_samples = Moments::default();
     for (part, area) in target.parts.iter().zip(areas) {
         for i in 0..(100_000.0 * area / total) as usize {
-            let s = part.surface.sample_area(random.pair()).unwrap();
+            let s = part.surface.sample_area(random.pair(), Detail::Texture).unwrap();
             assert!((s.pdf_area * area - 1.0).abs() < 1e-12 && (s.normal.length() - 1.0).abs() < 1e-9);
             by_samples.add(local(s.position));
             if i < 200 && case.type_name != "sphereflake" {
@@ -141,7 +141,7 @@ fn a_sphere_is_sampled_uniformly_by_solid_angle_from_near_and_far() {
         assert!((pdf * TAU * one_minus_cos - 1.0).abs() < 1e-9, "from {height}");
         let (mut mean, mut solid_angle, n) = (0.0, 0.0, 20_000);
         for _ in 0..n {
-            let (s, sample_pdf) = surface.sample_toward(from, random.pair()).unwrap();
+            let (s, sample_pdf) = surface.sample_toward(from, random.pair(), Detail::Texture).unwrap();
             assert_eq!(sample_pdf, pdf);
             assert!(((s.position - center).length() - radius).abs() < 1e-14 * 8.0);
             let to = s.position - from;
@@ -150,7 +150,7 @@ fn a_sphere_is_sampled_uniformly_by_solid_angle_from_near_and_far() {
             let chord = to.normalize() - (center - from).normalize();
             mean += 0.5 * chord.length_squared() / one_minus_cos / f64::from(n);
 
-            let a = surface.sample_area(random.pair()).unwrap();
+            let a = surface.sample_area(random.pair(), Detail::Texture).unwrap();
             let to = a.position - from;
             let cosine = -a.normal.dot(to) / to.length();
             solid_angle += cosine.max(0.0) / to.length_squared() / a.pdf_area / f64::from(n);
@@ -160,5 +160,5 @@ fn a_sphere_is_sampled_uniformly_by_solid_angle_from_near_and_far() {
             assert!((solid_angle * pdf - 1.0).abs() < 0.05, "from {height}: {solid_angle} steradians");
         }
     }
-    assert!(surface.sample_toward(center, (0.3, 0.3)).is_none() && surface.pdf_toward(center).is_none());
+    assert!(surface.sample_toward(center, (0.3, 0.3), Detail::Texture).is_none() && surface.pdf_toward(center).is_none());
 }

@@ -4,7 +4,7 @@ use kirkas_accel::{Accel, AccelKind, Counters, Geometry, Hit, HitFilter, Query, 
 use kirkas_geometry::hash::mix64;
 use kirkas_geometry::transform::rotation;
 use kirkas_geometry::{DAffine3, DMat3, DVec3, Ray, Vec2, Vec3};
-use kirkas_render::shapes::{COMMON, Part, SHAPES, ShapeInput, SurfacePoint};
+use kirkas_render::shapes::{COMMON, Detail, Part, SHAPES, ShapeInput, SurfacePoint};
 use kirkas_scene::{Assets, Catalog, Diagnostic, Entity, Kind, Map, MeshData, MeshPart, Node, Params, SourceId, Value};
 use std::sync::{Arc, Mutex};
 
@@ -227,7 +227,7 @@ impl Target {
     }
 
     pub fn point(&self, hit: &Hit, ray: &Ray) -> SurfacePoint {
-        self.parts[hit.geometry as usize].surface.point(hit.primitive, hit.u, hit.v, hit.t, ray)
+        self.parts[hit.geometry as usize].surface.point(hit.primitive, hit.u, hit.v, hit.t, ray, Detail::Texture)
     }
 }
 
