@@ -366,10 +366,12 @@ impl Scene {
     ) -> Option<LightSample> {
         let light = &self.lights[self.pieces.light(number) as usize];
         match (&light.lamp, self.pieces.is_empty()) {
-            (Lamp::Area(l), false) => match self.pieces.sample(number, l, u, self.materials[l.material as usize].detail) {
-                Some(s) => l.sample_at(s, lanes, (&self.materials, &self.textures), from, time),
-                None => self.sample_light(lanes, light, from, time, u),
-            },
+            (Lamp::Area(l), false) => {
+                match self.pieces.sample(number, l, u, self.materials[l.material as usize].detail) {
+                    Some(s) => l.sample_at(s, lanes, (&self.materials, &self.textures), from, time),
+                    None => self.sample_light(lanes, light, from, time, u),
+                }
+            }
             _ => self.sample_light(lanes, light, from, time, u),
         }
     }
@@ -507,7 +509,7 @@ impl Scene {
     }
 }
 
-/// Decides the coin of partial opacity: hash(sample, branch, primitive) < alpha.
+/// Decides the coin of partial opacity: hash(sample, branch, pane) < alpha.
 pub struct AlphaFilter<'a, K> {
     /// Where surfaces are looked up.
     pub scene: &'a Scene,
@@ -528,7 +530,8 @@ impl<K: Fn(usize) -> u64 + Sync> HitFilter for AlphaFilter<'_, K> {
     fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {
         let alpha = self.scene.alpha(ray, hit);
         let place = u64::from(hit.instance.outermost()) << 32 | u64::from(hit.geometry);
-        let coin = combine(combine((self.key)(ray_index), place), u64::from(hit.primitive));
+        let pane = self.scene.part(hit).surface.pane(hit.primitive);
+        let coin = combine(combine((self.key)(ray_index), place), u64::from(pane));
         unit_f32((coin >> 32) as u32) < alpha
     }
 }

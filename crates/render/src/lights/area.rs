@@ -211,7 +211,8 @@ impl AreaLight {
         let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let count = if emission.is_textured() { TEXTURE_PROBES } else { 1 };
-        let radiance = |i| Some(self.glow(emission, textures, &self.surface.sample_area(owen_sobol_2d(i, 0), Detail::Texture)?));
+        let radiance =
+            |i| Some(self.glow(emission, textures, &self.surface.sample_area(owen_sobol_2d(i, 0), Detail::Texture)?));
         let mean = (0..count).filter_map(radiance).sum::<f64>() / f64::from(count);
         PI * self.area * sides * mean
     }
@@ -225,7 +226,8 @@ impl AreaLight {
     pub fn glow_of_facet(&self, facet: u32, materials: &[Material], textures: &Textures) -> f64 {
         const PROBES: u32 = 4;
         let Some(emission) = &materials[self.material as usize].emission else { return 0.0 };
-        let samples = (0..PROBES).filter_map(|i| self.surface.sample_facet(facet, owen_sobol_2d(i, 0), Detail::Texture));
+        let samples =
+            (0..PROBES).filter_map(|i| self.surface.sample_facet(facet, owen_sobol_2d(i, 0), Detail::Texture));
         samples.map(|s| self.glow(emission, textures, &s)).sum::<f64>() / f64::from(PROBES)
     }
 

@@ -184,6 +184,11 @@ pub trait Surface: Send + Sync {
         None
     }
 
+    /// The number of what is there or not as a whole where it is partly opaque: a facet, or several in one plane.
+    fn pane(&self, primitive: u32) -> u32 {
+        primitive
+    }
+
     /// A box around all of it, in part space.
     fn bounds(&self) -> Bounds3;
 

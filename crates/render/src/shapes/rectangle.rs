@@ -20,15 +20,20 @@
 //! ```
 //!
 //! ## Limits
-//! A mirroring transform keeps the side that it faced, although the edges then turn the other way.
+//! Corners are rounded to f32 (about 7 digits) after the transform. A mirroring transform keeps the side that it faced, although the
+//! edges then turn the other way.
 //!
 //! ## References
-//! None needed.
+//! Intersection: two triangles, Woop, Benthin & Wald, "Watertight Ray/Triangle Intersection", 2013.
 
-use super::analytic::{Canonical, Crossings, Local, degenerate, place};
-use super::{Part, ShapeInput};
-use kirkas_geometry::{DAffine3, DMat3, DVec3};
+use super::analytic::degenerate;
+use super::triangles::{PlacedMesh, TriangleSurface};
+use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
+use crate::lights::Cone;
+use kirkas_geometry::transform::is_invertible;
+use kirkas_geometry::{Bounds3, DAffine3, DVec3, Ray};
 use kirkas_scene::{Diagnostic, Kind, ParamSpec, TypeSpec};
+use std::sync::Arc;
 
 /// Its table.
 pub const SPEC: TypeSpec = TypeSpec {
@@ -58,48 +63,79 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
         return Err(degenerate(input, "edge_v", "`edge_u` and `edge_v` are parallel".into(), "parallel to `edge_u`")
             .help("turn one of the edges; a right angle between them makes a rectangle"));
     }
-    // As long as the edges, so that the map is well conditioned.
-    let normal = across / across.length().sqrt();
-    let object_from_canonical =
-        DAffine3 { matrix3: DMat3::from_cols(u, v, normal), translation: center - u * 0.5 - v * 0.5 };
-    place(Rectangle, object_from_canonical, input)
+    let m = &input.part_from_object;
+    let (corner, edge_u, edge_v) =
+        (m.transform_point3(center - u * 0.5 - v * 0.5), m.transform_vector3(u), m.transform_vector3(v));
+    let placed = edge_u.cross(edge_v);
+    let corners = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v].map(|c| c.as_vec3());
+    if !(is_invertible(m) && placed.length() > 0.0 && corners.iter().all(|c| c.is_finite())) {
+        let name = &input.params.entity.name;
+        let what = format!("object `{}` is flat or too large to be computed with", name.text);
+        return Err(Diagnostic::error("degenerate-shape", what)
+            .at(name.span, "this one")
+            .help("make its sizes differ less from each other, and its transform invertible"));
+    }
+
+    // Keep the outside outside.
+    let is_mirrored = m.matrix3.determinant() < 0.0;
+    let triangles = if is_mirrored { vec![[0, 2, 1], [0, 3, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
+    let mesh = PlacedMesh {
+        positions: Arc::new(corners.to_vec()),
+        normals: Vec::new(),
+        uvs: Vec::new(),
+        object_from_part: m.inverse(),
+    };
+    let (triangles, shape) = TriangleSurface::new(Arc::new(mesh), triangles);
+    let normal = placed.normalize() * if is_mirrored { -1.0 } else { 1.0 };
+    let (area, object_from_part) = (placed.length(), m.inverse());
+    let surface = Rectangle { triangles, is_mirrored, corner, edge_u, edge_v, normal, area, object_from_part };
+    Ok(vec![Part { shape, surface: Arc::new(surface), own_material: None }])
 }
 
-/// Canonical: the unit square from the origin in the plane z = 0, facing +z.
-struct Rectangle;
+/// Two triangles for rays, and the exact rectangle for light; in part space.
+struct Rectangle {
+    triangles: TriangleSurface,
+    is_mirrored: bool,
+    corner: DVec3,
+    edge_u: DVec3,
+    edge_v: DVec3,
+    /// Outward.
+    normal: DVec3,
+    area: f64,
+    object_from_part: DAffine3,
+}
 
-impl Canonical for Rectangle {
-    const FLAT: bool = true;
-
-    fn support(&self, n: DVec3) -> f64 {
-        n.x.max(0.0) + n.y.max(0.0)
+impl Surface for Rectangle {
+    fn point(&self, primitive: u32, u: f32, v: f32, t: f32, ray: &Ray, detail: Detail) -> SurfacePoint {
+        // The triangles' edges run from the first corner to the others in turn; mirrored the other way round.
+        let (first, second) = if self.is_mirrored { (v, u) } else { (u, v) };
+        let both = (first + second).min(1.0);
+        let uv = if primitive == 0 { [both, second] } else { [first, both] };
+        SurfacePoint { uv, tangent: self.edge_u, ..self.triangles.point(primitive, u, v, t, ray, detail) }
     }
 
-    fn crossings(&self, o: DVec3, d: DVec3) -> Crossings {
-        let mut found = Crossings::default();
-        if d.z != 0.0 {
-            let t = -o.z / d.z;
-            let (x, y) = (o.x + t * d.x, o.y + t * d.y);
-            if (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y) {
-                found.push(t, 0);
-            }
-        }
-        found
+    fn area(&self) -> Option<f64> {
+        Some(self.area)
     }
 
-    fn project(&self, p: DVec3, _face: u8) -> DVec3 {
-        DVec3::new(p.x.clamp(0.0, 1.0), p.y.clamp(0.0, 1.0), 0.0)
+    fn sample_area(&self, u: (f32, f32), detail: Detail) -> Option<AreaSample> {
+        let position = self.corner + self.edge_u * f64::from(u.0) + self.edge_v * f64::from(u.1);
+        let object_position = match detail {
+            Detail::Place => DVec3::ZERO,
+            Detail::Texture => self.object_from_part.transform_point3(position),
+        };
+        Some(AreaSample { position, normal: self.normal, uv: [u.0, u.1], object_position, pdf_area: 1.0 / self.area })
     }
 
-    fn local(&self, p: DVec3, _face: u8) -> Local {
-        Local { normal: DVec3::Z, uv: [p.x, p.y], tangent: DVec3::X }
+    fn pane(&self, _primitive: u32) -> u32 {
+        0
     }
 
-    fn area(&self, m: &DMat3) -> Option<f64> {
-        Some(m.x_axis.cross(m.y_axis).length())
+    fn bounds(&self) -> Bounds3 {
+        self.triangles.bounds()
     }
 
-    fn sample(&self, _m: &DMat3, u: (f64, f64)) -> (DVec3, u8) {
-        (DVec3::new(u.0, u.1, 0.0), 0)
+    fn normals(&self) -> Cone {
+        Cone::of(self.normal)
     }
 }

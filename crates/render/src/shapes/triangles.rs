@@ -32,12 +32,17 @@ pub struct PlacedMesh {
 impl TriangleSurface {
     /// The part that these triangles make.
     pub fn part(mesh: Arc<PlacedMesh>, indices: Vec<[u32; 3]>, own_material: Option<String>) -> Part {
+        let (surface, shape) = Self::new(mesh, indices);
+        Part { shape, surface: Arc::new(surface), own_material }
+    }
+
+    /// The surface of these triangles, and what the accelerator holds.
+    pub fn new(mesh: Arc<PlacedMesh>, indices: Vec<[u32; 3]>) -> (Self, Shape) {
         let indices = Arc::new(indices);
         let corner = |&i: &u32| mesh.positions[i as usize];
         let bounds = Bounds3::around(indices.iter().flatten().map(corner));
         let shape = Shape::Triangles { positions: mesh.positions.clone(), indices: indices.clone() };
-        let surface = TriangleSurface { mesh, indices, bounds, cumulative_area: OnceLock::new() };
-        Part { shape, surface: Arc::new(surface), own_material }
+        (TriangleSurface { mesh, indices, bounds, cumulative_area: OnceLock::new() }, shape)
     }
 
     fn corners(&self, primitive: u32) -> [DVec3; 3] {

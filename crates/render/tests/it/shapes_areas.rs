@@ -160,5 +160,7 @@ fn a_sphere_is_sampled_uniformly_by_solid_angle_from_near_and_far() {
             assert!((solid_angle * pdf - 1.0).abs() < 0.05, "from {height}: {solid_angle} steradians");
         }
     }
-    assert!(surface.sample_toward(center, (0.3, 0.3), Detail::Texture).is_none() && surface.pdf_toward(center).is_none());
+    assert!(
+        surface.sample_toward(center, (0.3, 0.3), Detail::Texture).is_none() && surface.pdf_toward(center).is_none()
+    );
 }
