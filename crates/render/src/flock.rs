@@ -209,17 +209,25 @@ impl<'a, O: Observer> Flock<'a, O> {
 
     fn step(&mut self, path: &PathState, slot_index: usize, hit: Option<Hit>) {
         let scene = self.renderer.scene;
-        let surface: Option<SurfaceHit> = hit.map(|h| scene.surface(&path.ray, &h));
+        // Where it is made it stays.
+        let found;
+        let surface = match &hit {
+            Some(hit) => {
+                found = scene.surface(&path.ray, hit);
+                Some(&found)
+            }
+            None => None,
+        };
         let slot = &mut self.slots[slot_index];
-        if let Some(s) = &surface {
+        if let Some(s) = surface {
             self.observer.hit(slot.id, path, s);
         }
         let is_seen = |s: &SurfaceHit| !crossing::is_covered(scene, path, s);
         let looks = self.renderer.keeps_aovs && path.kind == RayKind::Camera && slot.aov.is_none();
-        if looks && surface.as_ref().is_none_or(is_seen) {
-            slot.aov = Some(surface.as_ref().map_or_else(AovSample::default, |s| self.renderer.aov(path, s)));
+        if looks && surface.is_none_or(is_seen) {
+            slot.aov = Some(surface.map_or_else(AovSample::default, |s| self.renderer.aov(path, s)));
         }
-        self.renderer.integrator.step(scene, path, &slot.sampler, surface.as_ref(), &mut self.out);
+        self.renderer.integrator.step(scene, path, &slot.sampler, surface, &mut self.out);
         for (light, group) in self.out.contributions.drain(..) {
             add(self.renderer, slot, self.observer, path.branch, light, group);
         }

@@ -210,6 +210,7 @@ impl Scene {
     }
 
     /// The boundary at a hit of a path that is inside of `media`.
+    #[inline(always)]
     pub fn interface(&self, lanes: &Lanes, media: &MediumStack, hit: &SurfaceHit) -> Interface {
         let Some(inside) = &self.material(hit).medium else { return Interface::VACUUM };
         let others = if hit.is_front { *media } else { media.left(hit.material) };
@@ -303,11 +304,13 @@ impl Scene {
     }
 
     /// The scattering at a hit.
+    #[inline(always)]
     pub fn bsdf(&self, lanes: &Lanes, hit: &SurfaceHit, interface: Interface) -> Bsdf {
         self.material(hit).bsdf(lanes, &self.textures, &hit.texture, interface)
     }
 
     /// Radiance that the surface itself sends towards where the ray came from.
+    #[inline]
     pub fn emitted(&self, lanes: &Lanes, hit: &SurfaceHit) -> Light {
         match &self.material(hit).emission {
             Some(e) if hit.is_front || e.two_sided => {

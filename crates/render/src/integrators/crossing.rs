@@ -12,6 +12,7 @@ use kirkas_optics::{Bsdf, Light, Lobe};
 const MOST_PASSED: u32 = 256;
 
 /// True when the surface is not there: a hull, or a boundary that lies inside a body of higher rank.
+#[inline]
 pub fn is_covered(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> bool {
     let material = scene.material(hit);
     material.is_hull || material.medium.is_some() && scene.is_covered(&path.media, hit.material, hit.is_front)
@@ -31,6 +32,7 @@ pub fn passed(path: &PathState, hit: &SurfaceHit) -> Option<PathState> {
 
 /// The ray along `ray` that asks whether `light` arrives from lamp number `lamp`, through these bodies; `None` if there is no light
 /// to ask for. What fades light on its way does so now if it stays in one body, else as it goes.
+#[inline(always)]
 pub fn ask(
     scene: &Scene,
     path: &PathState,
@@ -64,6 +66,7 @@ pub fn ask(
 }
 
 /// The surface's scattering, with the bodies on both its sides.
+#[inline(always)]
 pub fn bsdf(scene: &Scene, path: &PathState, hit: &SurfaceHit) -> Bsdf {
     let interface = scene.interface(&path.lanes, &path.media, hit);
     scene.bsdf(&path.lanes, hit, interface)
@@ -82,6 +85,7 @@ pub fn keeps_side(hit: &SurfaceHit, direction: DVec3, lobe: Lobe) -> bool {
 }
 
 /// Bodies around a ray that leaves the surface along `direction`.
+#[inline(always)]
 pub fn media_towards(scene: &Scene, media: &MediumStack, hit: &SurfaceHit, direction: DVec3) -> MediumStack {
     match (goes_up(hit, direction), hit.is_front) {
         _ if scene.material(hit).medium.is_none() => *media,

@@ -29,8 +29,8 @@ mod connect;
 mod splats;
 
 use super::forward::{RANGE, Tracer, usual_count};
-use super::path::{self, MAX_DEPTH, Path, ROULETTE_DEPTH};
-use super::{Integrator, Landed, Pass, PathState, StepOutput, particle};
+use super::path::{self, MAX_DEPTH, Path, ROULETTE_DEPTH, Vertex};
+use super::{Integrator, Landed, Pass, PathState, StepOutput, crossing, particle};
 use crate::lights::pick::SELECTION;
 use crate::media::{FlightEnd, Way};
 use crate::observe::PathEnd;
@@ -163,7 +163,11 @@ impl Integrator for Shown {
         path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
 
         // Go on where no particle could have come from.
-        let Some(vertex) = path::reach(scene, &path, hit, self.settings.max_depth, out) else { return };
+        if !path::reach(scene, &path, hit, self.settings.max_depth, out) {
+            return;
+        }
+        let bsdf = crossing::bsdf(scene, &path, hit);
+        let Some(vertex) = Vertex::new(&path, hit, &bsdf, out) else { return };
         if vertex.lobes.intersects(LobeSet::DELTA) {
             vertex.send_on(scene, &path, sampler, LobeSet::DELTA, self.settings.path.roulette_depth, out);
         } else {

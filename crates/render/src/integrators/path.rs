@@ -92,7 +92,11 @@ impl Integrator for Path {
         };
 
         // Ask a light, and go on.
-        let Some(vertex) = reach(scene, path, hit, self.max_depth, out) else { return };
+        if !reach(scene, path, hit, self.max_depth, out) {
+            return;
+        }
+        let bsdf = crossing::bsdf(scene, path, hit);
+        let Some(vertex) = Vertex::new(path, hit, &bsdf, out) else { return };
         if vertex.lobes.intersects(LobeSet::NON_DELTA) {
             out.shadow_rays.extend(vertex.ask_light(scene, path, sampler, LobeSet::ALL));
         }
@@ -148,6 +152,7 @@ impl Path {
 }
 
 /// Send the path on, or end it by chance.
+#[inline(always)]
 fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette_depth: u32, out: &mut StepOutput) {
     if next.depth >= roulette_depth {
         let chance = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
@@ -160,29 +165,19 @@ fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette
     out.paths.push(next);
 }
 
-/// The surface at the path's end, after it was seen to shine; `None` where a covered boundary is passed or the path ends.
-pub(super) fn reach<'a>(
-    scene: &Scene,
-    path: &PathState,
-    hit: &'a SurfaceHit,
-    max_depth: u32,
-    out: &mut StepOutput,
-) -> Option<Vertex<'a>> {
+/// See the surface at the path's end shine; false where it is a covered boundary, which is passed, or the path ends.
+#[inline(always)]
+pub(super) fn reach(scene: &Scene, path: &PathState, hit: &SurfaceHit, max_depth: u32, out: &mut StepOutput) -> bool {
     if crossing::is_covered(scene, path, hit) {
         out.paths.extend(crossing::passed(path, hit));
-        return None;
+        return false;
     }
     see_emission(scene, path, hit, out);
     if path.depth >= max_depth {
         out.end = Some(PathEnd::Depth);
-        return None;
+        return false;
     }
-    let vertex = Vertex::new(scene, path, hit);
-    if vertex.lobes.is_empty() {
-        out.end = Some(PathEnd::Absorbed);
-        return None;
-    }
-    Some(vertex)
+    true
 }
 
 /// The path sees the background and ends.
@@ -202,6 +197,7 @@ pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
 }
 
 /// The path sees the surface shine, if it does.
+#[inline(always)]
 fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
     let emitted = scene.emitted(&path.lanes, hit);
     if !emitted.is_black() {
@@ -235,7 +231,7 @@ pub(super) fn power_heuristic(own: f32, other: f32) -> f32 {
 /// A surface that a path has reached, with all that is asked of it twice.
 pub(super) struct Vertex<'a> {
     pub(super) hit: &'a SurfaceHit,
-    pub(super) bsdf: Bsdf,
+    pub(super) bsdf: &'a Bsdf,
     pub(super) lobes: LobeSet,
     /// Back along the path, in the surface's frame.
     pub(super) wo: Vec3,
@@ -244,18 +240,25 @@ pub(super) struct Vertex<'a> {
 }
 
 impl<'a> Vertex<'a> {
-    pub(super) fn new(scene: &Scene, path: &PathState, hit: &'a SurfaceHit) -> Self {
-        let bsdf = crossing::bsdf(scene, path, hit);
+    /// `None`, and the path ends, where the surface swallows all light.
+    #[inline(always)]
+    pub(super) fn new(path: &PathState, hit: &'a SurfaceHit, bsdf: &'a Bsdf, out: &mut StepOutput) -> Option<Self> {
         let lobes = bsdf.lobes();
+        if lobes.is_empty() {
+            out.end = Some(PathEnd::Absorbed);
+            return None;
+        }
         let normal = match (lobes.intersects(LobeSet::TRANSMISSION), hit.is_front) {
             (true, _) => DVec3::ZERO,
             (false, true) => hit.normal,
             (false, false) => -hit.normal,
         };
-        Vertex { hit, bsdf, lobes, wo: hit.frame.to_local(-path.ray.direction.normalize()), normal }
+        let wo = hit.frame.to_local(-path.ray.direction.normalize());
+        Some(Vertex { hit, bsdf, lobes, wo, normal })
     }
 
     /// One light, and what comes from it unless something is in the way; weighted against a ray that `rivals` send.
+    #[inline(always)]
     pub(super) fn ask_light(
         &self,
         scene: &Scene,
@@ -303,6 +306,7 @@ impl<'a> Vertex<'a> {
     }
 
     /// The path after this surface by one of `lobes`; `None` if the surface swallows it.
+    #[inline(always)]
     pub(super) fn go_on(
         &self,
         scene: &Scene,

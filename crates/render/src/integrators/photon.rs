@@ -170,7 +170,11 @@ impl Integrator for Gatherer {
         };
         let mut path = *path;
         path.throughput *= scene.clearness(&path.lanes, &path.media, f64::from(hit.t * path.ray.direction.length()));
-        let Some(vertex) = path::reach(scene, &path, hit, self.settings.max_depth, out) else { return };
+        if !path::reach(scene, &path, hit, self.settings.max_depth, out) {
+            return;
+        }
+        let bsdf = crossing::bsdf(scene, &path, hit);
+        let Some(vertex) = Vertex::new(&path, hit, &bsdf, out) else { return };
         let roulette_depth = self.settings.roulette_depth;
         if !vertex.lobes.intersects(LobeSet::DIFFUSE) {
             if vertex.lobes.intersects(LobeSet::NON_DELTA) {

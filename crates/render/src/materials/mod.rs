@@ -166,6 +166,7 @@ impl Material {
     }
 
     /// The model at a point.
+    #[inline(always)]
     pub fn bsdf(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint, interface: Interface) -> Bsdf {
         let mut slots = [Light::BLACK; MOST_ROWS];
         for (slot, row) in slots.iter_mut().zip(&self.rows) {
