@@ -5,10 +5,7 @@ use kirkas_geometry::{Ray, Vec3, Vec4};
 
 /// A ray ready to be tested. Rays inside an instance carry two intervals: the world ray's own, and that of the instance's
 /// bounds, into which `t` is clamped.
-///
-/// Aligned, so that what is written as a whole and read in parts lies within a line of memory.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
 pub struct PreparedRay {
     /// The ray, its `t` limited to the bounds of its instance: what boxes are tested with.
     pub(crate) clipped: Ray,

@@ -1,7 +1,7 @@
 //! The arithmetic of a step in AVX2: the edge test operation for operation that of [`Portable`](super::backend::Portable), the box
 //! tests with fused operations, within the slack that they have.
 
-use super::backend::{Backend, CROSSINGS, Candidate, Crossings, Keys, Weights};
+use super::backend::{Backend, Keys, Weights};
 use super::box_ray::{BoxRay, ROW};
 use super::node::{Block, Node};
 use crate::prepared_ray::PreparedRay;
@@ -42,12 +42,6 @@ impl Backend for Avx2 {
         let corners = || unsafe { (*block).triangle(lane) };
         let (u, v) = triangle::barycentric(weights, || (corners(), *ray))?;
         Some((t, u, v))
-    }
-
-    #[inline(always)]
-    unsafe fn crossings(candidates: &[Candidate; CROSSINGS]) -> Crossings {
-        // SAFETY: the caller promises AVX2 and FMA, and what the candidates point to.
-        unsafe { super::avx2_crossings::crossings(candidates) }
     }
 
     #[inline(always)]

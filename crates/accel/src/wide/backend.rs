@@ -37,30 +37,6 @@ impl Weights {
     }
 }
 
-/// A triangle of which a ray passes the edges.
-#[derive(Clone, Copy)]
-pub(super) struct Candidate {
-    pub block: *const Block,
-    /// Its place in the block, below 8.
-    pub lane: usize,
-    pub ray: *const PreparedRay,
-    /// Of the block.
-    pub weights: *const Weights,
-}
-
-/// How many crossings are found at once.
-pub(super) const CROSSINGS: usize = 4;
-
-/// Where rays cross the planes of candidates.
-#[repr(C, align(16))]
-pub(super) struct Crossings {
-    pub t: [f32; CROSSINGS],
-    pub u: [f32; CROSSINGS],
-    pub v: [f32; CROSSINGS],
-    /// A bit for each candidate that is crossed.
-    pub found: u32,
-}
-
 /// The arithmetic of a step.
 pub(super) trait Backend {
     /// The box test of all children: keys of those that the ray may enter before `limit`, by entry distance or (`ANY`) by the
@@ -87,23 +63,6 @@ pub(super) trait Backend {
         ray: &PreparedRay,
         weights: &Weights,
     ) -> Option<(f32, f32, f32)>;
-
-    /// [`triangle::crossing`] of several candidates.
-    ///
-    /// # Safety
-    /// The CPU has what the backend needs; what the candidates point to is valid.
-    #[inline(always)]
-    unsafe fn crossings(candidates: &[Candidate; CROSSINGS]) -> Crossings {
-        let mut all = Crossings { t: [0.0; CROSSINGS], u: [0.0; CROSSINGS], v: [0.0; CROSSINGS], found: 0 };
-        for (i, c) in candidates.iter().enumerate() {
-            // SAFETY: the caller promises as much.
-            if let Some((t, u, v)) = unsafe { Self::crossing(c.block, c.lane, &*c.ray, &*c.weights) } {
-                (all.t[i], all.u[i], all.v[i]) = (t, u, v);
-                all.found |= 1 << i;
-            }
-        }
-        all
-    }
 
     /// The least key, and the first place where it is.
     ///

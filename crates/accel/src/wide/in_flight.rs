@@ -4,8 +4,8 @@
 
 use super::Tree;
 use super::arena;
-use super::backend::{Backend, CROSSINGS, Candidate, Portable, Weights};
-use super::node::{Block, Place, WIDTH};
+use super::backend::{Backend, Portable, Weights};
+use super::node::{Block, Place};
 use super::walker::{Ground, Walker};
 use crate::hit::{Counters, Hit};
 use crate::prepared_ray::PreparedRay;
@@ -75,7 +75,8 @@ struct Slot<'a, const ANY: bool> {
     walker: Walker,
     ray: PreparedRay,
     search: Search<'a, ANY>,
-    /// Of the block where the ray is: what weighs the corners of its triangles.
+    /// Of the block where the ray is: the triangles whose edges it passes, and what weighs their corners.
+    passing: u32,
     weights: MaybeUninit<Weights>,
 }
 
@@ -165,7 +166,6 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
     let mut queue = Queue { batch, waiting, counters, done };
     let mut lists = Lists { nodes: [0; IN_FLIGHT], leaves: [0; IN_FLIGHT] };
     let mut n = Counts { nodes: 0, leaves: 0 };
-    let mut candidates = Candidates { all: [const { MaybeUninit::uninit() }; IN_FLIGHT * WIDTH + CROSSINGS], count: 0 };
     for number in 0..IN_FLIGHT {
         let offset = number * size_of::<Slot<ANY>>();
         // SAFETY: within the slots.
@@ -193,27 +193,37 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
         } else {
             // The edges of the triangles in each block,
             let count = core::mem::take(&mut n.leaves);
-            candidates.count = 0;
+            let (mut passed, mut through) = ([0; IN_FLIGHT], [0; IN_FLIGHT]);
+            let (mut n_passed, mut n_through) = (0, 0);
             for &offset in &lists.leaves[..count] {
                 // SAFETY: slots in the lists hold rays.
                 let slot = unsafe { &mut *first.byte_add(offset as usize) };
                 let place = slot.walker.place;
+                slot.passing = 0;
                 if place.is_block() {
                     // SAFETY: the tree's places lead to what they say; the caller promises the CPU.
-                    let passing = unsafe {
+                    unsafe {
                         let block: *const Block = arena::get(ground.lines, place.line());
                         slot.search.counters.primitives_tested += place.count() as u64;
-                        B::edges(block, &slot.ray, &mut slot.weights) & ((1 << place.count()) - 1)
-                    };
-                    candidates.push(offset, passing);
+                        slot.passing = B::edges(block, &slot.ray, &mut slot.weights) & ((1 << place.count()) - 1);
+                    }
                 }
+                passed[n_passed & (IN_FLIGHT - 1)] = offset;
+                through[n_through & (IN_FLIGHT - 1)] = offset;
+                n_passed += usize::from(slot.passing != 0);
+                n_through += usize::from(slot.passing == 0);
             }
             // then the planes of those that are passed,
-            // SAFETY: the blocks that were looked at above.
-            unsafe { cross::<B, ANY>(first, &mut candidates, &ground) };
+            for &offset in &passed[..n_passed] {
+                // SAFETY: slots in the lists hold rays.
+                let slot = unsafe { &mut *first.byte_add(offset as usize) };
+                // SAFETY: the block that was looked at above.
+                unsafe { cross::<B, ANY>(slot, &ground) };
+                through[n_through & (IN_FLIGHT - 1)] = offset;
+                n_through += 1;
+            }
             // and on to what is left.
-            for i in 0..count {
-                let offset = lists.leaves[i];
+            for &offset in &through[..n_through] {
                 // SAFETY: slots in the lists hold rays.
                 let slot = unsafe { &mut *first.byte_add(offset as usize) };
                 // SAFETY: the caller promises the CPU.
@@ -232,61 +242,25 @@ unsafe fn fly<'a, B: Backend, const ANY: bool>(
     }
 }
 
-/// Triangles whose edges are passed, by the slot of the ray and their place in the block where it is.
-struct Candidates {
-    all: [MaybeUninit<(u32, u32)>; IN_FLIGHT * WIDTH + CROSSINGS],
-    count: usize,
-}
-
-impl Candidates {
-    /// Those of one slot, a bit each.
-    #[inline(always)]
-    fn push(&mut self, slot: u32, mut passing: u32) {
-        while passing != 0 {
-            self.all[self.count & 0xff].write((slot, passing.trailing_zeros()));
-            self.count += 1;
-            passing &= passing - 1;
-        }
-    }
-}
-
-/// Offer each ray the crossings with its candidates.
+/// Offer the crossings with the triangles whose edges are passed.
 ///
 /// # Safety
-/// The rays in these slots are at blocks, of which `weights` speak; the CPU has what `B` needs.
+/// The ray is at a block, of which `passing` and `weights` speak; the CPU has what `B` needs.
 #[inline(always)]
-unsafe fn cross<B: Backend, const ANY: bool>(
-    first: *mut Slot<'_, ANY>,
-    candidates: &mut Candidates,
-    ground: &Ground<ANY>,
-) {
-    let count = candidates.count;
-    if count == 0 {
-        return;
-    }
-    // SAFETY: those below `count` were written.
+unsafe fn cross<B: Backend, const ANY: bool>(slot: &mut Slot<ANY>, ground: &Ground<ANY>) {
+    // SAFETY: the caller promises as much.
     unsafe {
-        // The last one fills the last four.
-        let last = candidates.all[count - 1];
-        candidates.all[count..count + CROSSINGS - 1].fill(last);
-        for start in (0..count).step_by(CROSSINGS) {
-            let four = [0, 1, 2, 3].map(|i| {
-                let (offset, lane) = candidates.all[start + i].assume_init();
-                let slot = first.byte_add(offset as usize);
-                let block = arena::get(ground.lines, (*slot).walker.place.line());
-                let weights = (&raw const (*slot).weights).cast();
-                Candidate { block, lane: lane as usize, ray: &raw const (*slot).ray, weights }
-            });
-            let crossings = B::crossings(&four);
-            let mut found = crossings.found & ((1 << (count - start).min(CROSSINGS)) - 1);
-            while found != 0 {
-                let i = found.trailing_zeros() as usize & (CROSSINGS - 1);
-                found &= found - 1;
-                let (offset, lane) = candidates.all[start + i].assume_init();
-                let slot = &mut *first.byte_add(offset as usize);
-                let (geometry, index) = ground.tree.numbers.ids((&(*four[i].block).numbers)[lane as usize & 7]);
-                let crossing = (crossings.t[i], crossings.u[i], crossings.v[i]);
+        let block: *const Block = arena::get(ground.lines, slot.walker.place.line());
+        let mut passing = slot.passing;
+        loop {
+            let lane = passing.trailing_zeros() as usize & 7;
+            passing &= passing - 1;
+            if let Some(crossing) = B::crossing(block, lane, &slot.ray, slot.weights.assume_init_ref()) {
+                let (geometry, index) = ground.tree.numbers.ids((&(*block).numbers)[lane]);
                 slot.search.offer(ground.level, geometry, index, crossing);
+            }
+            if passing == 0 {
+                return;
             }
         }
     }

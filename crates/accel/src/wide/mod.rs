@@ -6,8 +6,6 @@
 mod arena;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx2_crossings;
 mod backend;
 mod box_ray;
 mod closest;

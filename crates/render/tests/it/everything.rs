@@ -13,6 +13,8 @@ use kirkas_scene::Kind;
 const SCENE: &str = include_str!("scenes/everything.toml");
 /// Media, for integrators that know them.
 const MEDIA: &str = include_str!("scenes/media.toml");
+/// More reflectance models.
+const MATTER: &str = include_str!("scenes/matter.toml");
 const FILES: [(&str, &[u8]); 3] = [
     ("gem.obj", include_bytes!("scenes/gem.obj")),
     ("leaf.png", include_bytes!("scenes/leaf.png")),
@@ -55,6 +57,7 @@ fn variants() -> [String; 4] {
             ("[sampler]", &format!("[sampler]\ntype = \"{sampler}\"")),
             ("light_groups = true", "light_groups = true\ncolor = \"spectral\""),
         ]) + MEDIA
+            + MATTER
     };
     [SCENE.to_string(), variant(&plain), traced("path", "halton"), traced("path_simple", "stratified")]
 }
