@@ -7,7 +7,7 @@ use crate::triangle::{self, Corners};
 use kirkas_geometry::rounding::UNIT_ROUNDOFF;
 use kirkas_geometry::{Bounds3, DVec3, Vec3};
 
-/// A triangle cut by the 6 faces of a box and a plane has 10 corners at most; the rest is for roundings.
+/// A triangle cut by the 6 faces of a box and a plane has 10 corners at most, and by the planes of `presplit` 9; the rest is for roundings.
 const MAX_CORNERS: usize = 16;
 
 /// A part of a triangle.
@@ -49,11 +49,6 @@ impl Polygon {
             *own = Vec3::from_array(*c).as_dvec3();
         }
         whole
-    }
-
-    /// True when another cut leaves room for its corners.
-    pub fn can_be_cut(&self) -> bool {
-        self.len + 2 <= MAX_CORNERS
     }
 
     /// What lies at the plane and to one side of it.

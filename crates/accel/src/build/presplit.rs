@@ -28,13 +28,16 @@ const STRIDE: usize = 7;
 
 /// Replace long triangles by parts, at most `room` more than there are; returns how many more.
 pub(crate) fn presplit(references: &mut Vec<Reference>, corners: CornersOf, room: usize) -> usize {
+    let room = room.min((MAX_ID as usize).saturating_sub(references.len()));
+    if room < MOST_PARTS {
+        return 0;
+    }
     let whole = references.iter().fold(Box4::EMPTY, |b, r| b.union(r.0));
     let mut cutter = Cutter { corners, whole, least_gain: LEAST_GAIN * whole.half_area() / references.len() as f32 };
     if !(cutter.least_gain > 0.0 && cutter.least_gain.is_finite()) {
         return 0;
     }
     // How much may be asked of a cut, by a sample of them.
-    let room = room.min((MAX_ID as usize).saturating_sub(references.len()));
     let stride = if references.len() > SAMPLE_ABOVE { STRIDE } else { 1 };
     let mut counts = Counts([0; OCTAVES * STEPS]);
     for r in references.iter().step_by(stride) {
@@ -99,7 +102,7 @@ impl Cutter<'_> {
         cuts: u32,
     ) -> Option<([Reference; 2], [Polygon; 2], f32)> {
         let area = r.0.half_area();
-        if 0.5 * area < self.least_gain || cuts == MAX_CUTS || !polygon.can_be_cut() {
+        if 0.5 * area < self.least_gain || cuts == MAX_CUTS {
             return None;
         }
         let size = r.0.hi.minus(r.0.lo).0;

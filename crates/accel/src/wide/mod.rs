@@ -101,7 +101,7 @@ impl Tree {
             Quality::Fast | Quality::Compact => 0.0,
         };
         let room = (count as f32 * room) as usize;
-        let parts = if room > 0 { presplit::presplit(&mut references, &corners, room) } else { 0 };
+        let parts = presplit::presplit(&mut references, &corners, room);
         let binary = match quality {
             // Where many were long, further cuts take long to find and gain nothing.
             Quality::Best if 4 * parts > room => {
