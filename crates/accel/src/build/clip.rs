@@ -66,14 +66,37 @@ impl Polygon {
                 part.push(*p);
             }
             if is_in(p) != is_in(q) {
-                // From the lower end, so that both sides' parts meet in one point.
-                let (low, high) = if p[axis] < q[axis] { (*p, *q) } else { (*q, *p) };
-                let mut crossing = low + (high - low) * ((plane - low[axis]) / (high[axis] - low[axis]));
-                crossing[axis] = plane;
-                part.push(crossing);
+                part.push(crossing(p, q, axis, plane));
             }
         }
         part
+    }
+
+    /// What lies at the plane and below, and what lies at it and above.
+    pub fn halves(&self, axis: usize, plane: f32) -> [Polygon; 2] {
+        let plane = f64::from(plane);
+        let mut halves = [Polygon { corners: [DVec3::ZERO; MAX_CORNERS], len: 0 }; 2];
+        let own = &self.corners[..self.len];
+        let mut p = match own.last() {
+            Some(p) => *p,
+            None => return halves,
+        };
+        for q in own {
+            let (before, now) = (p[axis] - plane, q[axis] - plane);
+            if (before < 0.0 && now > 0.0) || (before > 0.0 && now < 0.0) {
+                let crossing = crossing(&p, q, axis, plane);
+                halves[0].push(crossing);
+                halves[1].push(crossing);
+            }
+            if now <= 0.0 {
+                halves[0].push(*q);
+            }
+            if now >= 0.0 {
+                halves[1].push(*q);
+            }
+            p = *q;
+        }
+        halves
     }
 
     fn push(&mut self, corner: DVec3) {
@@ -93,6 +116,14 @@ impl Polygon {
         let pad = |x: Vec3| Vec3::splat(growth) + x.abs() * (4.0 * UNIT_ROUNDOFF);
         Bounds3 { min: b.min - pad(b.min), max: b.max + pad(b.max) }
     }
+}
+
+/// Where an edge meets the plane: from its lower end, so that both sides' parts meet in one point.
+fn crossing(p: &DVec3, q: &DVec3, axis: usize, plane: f64) -> DVec3 {
+    let (low, high) = if p[axis] < q[axis] { (p, q) } else { (q, p) };
+    let mut crossing = *low + (*high - *low) * ((plane - low[axis]) / (high[axis] - low[axis]));
+    crossing[axis] = plane;
+    crossing
 }
 
 #[cfg(test)]

@@ -7,9 +7,11 @@
 //! planes that halve the scene's box, its halves, and so on: where the parts of one triangle end, so do those of others.
 
 use super::clip::Polygon;
+use super::parallel::for_each;
+use super::partition::CHUNK;
 use super::reference::{Box4, MAX_ID, Reference};
 use super::spatial_split::CornersOf;
-use crate::triangle;
+use crate::{Executor, triangle};
 use kirkas_geometry::Bounds3;
 
 /// A cut takes off this many times the area that each reference has if all boxes together cover the scene's once.
@@ -27,7 +29,12 @@ const SAMPLE_ABOVE: usize = 1 << 14;
 const STRIDE: usize = 7;
 
 /// Replace long triangles by parts, at most `room` more than there are; returns how many more.
-pub(crate) fn presplit(references: &mut Vec<Reference>, corners: CornersOf, room: usize) -> usize {
+pub(crate) fn presplit(
+    references: &mut Vec<Reference>,
+    corners: CornersOf,
+    room: usize,
+    executor: &dyn Executor,
+) -> usize {
     let room = room.min((MAX_ID as usize).saturating_sub(references.len()));
     if room < MOST_PARTS {
         return 0;
@@ -39,23 +46,67 @@ pub(crate) fn presplit(references: &mut Vec<Reference>, corners: CornersOf, room
     }
     // How much may be asked of a cut, by a sample of them.
     let stride = if references.len() > SAMPLE_ABOVE { STRIDE } else { 1 };
-    let mut counts = Counts([0; OCTAVES * STEPS]);
-    for r in references.iter().step_by(stride) {
-        cutter.cut(r, &mut |gain| counts.add(gain / cutter.least_gain), &mut |_| {});
-    }
-    cutter.least_gain *= counts.least_gain(room / stride);
-    let mut parts = Vec::new();
-    for r in references.iter_mut() {
-        let first = parts.len();
-        if first + MOST_PARTS > room {
-            break;
+    let mut counts: Vec<_> = references.chunks(CHUNK * stride).map(|of| (of, Counts([0; OCTAVES * STEPS]))).collect();
+    for_each(&mut counts, executor, &|(of, counts)| {
+        for r in of.iter().step_by(stride) {
+            cutter.cut(r, &mut |gain| counts.add(gain / cutter.least_gain), &mut |_| {});
         }
-        cutter.cut(r, &mut |_| {}, &mut |part| parts.push(part));
-        *r = parts.swap_remove(first);
+    });
+    let mut all = Counts([0; OCTAVES * STEPS]);
+    counts.iter().for_each(|(_, counts)| all.merge(counts));
+    cutter.least_gain *= all.least_gain(room / stride);
+    if cutter.least_gain == f32::INFINITY {
+        return 0;
     }
-    let more = parts.len();
-    references.append(&mut parts);
-    more
+    let mut cuts: Vec<_> = references.chunks(CHUNK).map(|of| (of, Cuts::default())).collect();
+    for_each(&mut cuts, executor, &|(of, cuts)| {
+        for (i, r) in of.iter().enumerate() {
+            cuts.begin(i);
+            cutter.cut(r, &mut |_| {}, &mut |part| cuts.parts.push(part));
+            cuts.end();
+        }
+    });
+    let cuts: Vec<Cuts> = cuts.into_iter().map(|(_, cuts)| cuts).collect();
+    let before = references.len();
+    references.reserve(cuts.iter().map(|c| c.parts.len()).sum::<usize>().min(room));
+    for (chunk, cuts) in cuts.iter().enumerate() {
+        for (i, parts) in cuts.of_each() {
+            if references.len() - before + parts.len() - 1 > room {
+                return references.len() - before;
+            }
+            references[chunk * CHUNK + i] = parts[0];
+            references.extend_from_slice(&parts[1..]);
+        }
+    }
+    references.len() - before
+}
+
+/// The parts of those that were cut.
+#[derive(Default)]
+struct Cuts {
+    parts: Vec<Reference>,
+    /// Which was cut, and where its parts begin.
+    begins: Vec<(usize, usize)>,
+}
+
+impl Cuts {
+    /// What follows are parts of this one.
+    fn begin(&mut self, index: usize) {
+        self.begins.push((index, self.parts.len()));
+    }
+
+    /// A single part is no cut.
+    fn end(&mut self) {
+        if self.begins.last().is_some_and(|(_, begin)| begin + 1 == self.parts.len()) {
+            self.begins.pop();
+            self.parts.pop();
+        }
+    }
+
+    fn of_each(&self) -> impl Iterator<Item = (usize, &[Reference])> {
+        let ends = self.begins.iter().skip(1).map(|(_, begin)| *begin).chain([self.parts.len()]);
+        self.begins.iter().zip(ends).map(|((index, begin), end)| (*index, &self.parts[*begin..end]))
+    }
 }
 
 struct Cutter<'a> {
@@ -84,7 +135,15 @@ impl Cutter<'_> {
         gain: &mut impl FnMut(f32),
         part: &mut impl FnMut(Reference),
     ) {
-        let Some((parts, polygons, took_off)) = self.best_cut(of, r, polygon, cuts) else { return part(*r) };
+        let area = r.0.half_area();
+        let plane = if 0.5 * area < self.least_gain || cuts == MAX_CUTS { None } else { self.plane(r) };
+        let Some((axis, at)) = plane else { return part(*r) };
+        let polygons = polygon.halves(axis, at);
+        let Some(parts) = parts(of, r, &polygons) else { return part(*r) };
+        let took_off = area - parts[0].0.half_area() - parts[1].0.half_area();
+        if !(took_off >= self.least_gain && took_off >= LEAST_SHARE * area) {
+            return part(*r);
+        }
         // No cut counts more than the one that must come before it.
         let took_off = took_off.min(most);
         gain(took_off);
@@ -93,46 +152,30 @@ impl Cutter<'_> {
         }
     }
 
-    /// Across the longest side, if that takes off enough.
-    fn best_cut(
-        &self,
-        of: &Triangle,
-        r: &Reference,
-        polygon: &Polygon,
-        cuts: u32,
-    ) -> Option<([Reference; 2], [Polygon; 2], f32)> {
-        let area = r.0.half_area();
-        if 0.5 * area < self.least_gain || cuts == MAX_CUTS {
-            return None;
-        }
+    /// The plane across the longest side, through its middle half, that halves the largest part of the scene's box.
+    fn plane(&self, r: &Reference) -> Option<(usize, f32)> {
         let size = r.0.hi.minus(r.0.lo).0;
         let axis = (0..3).fold(0, |longest, k| if size[k] > size[longest] { k } else { longest });
-        let at = self.plane(r, axis)?;
-        let polygons = [true, false].map(|below| polygon.cut(axis, at, below));
-        let around = r.bounds();
-        let parts = polygons.map(|p| {
-            let b = p.bounds(of.growth);
-            Bounds3 { min: b.min.max(around.min), max: b.max.min(around.max) }
-        });
-        if !parts.iter().all(|b| b.min.cmple(b.max).all()) {
-            return None;
-        }
-        let parts = parts.map(|b| Reference::new(&b, of.ids.0, of.ids.1));
-        let gain = area - parts[0].0.half_area() - parts[1].0.half_area();
-        (gain >= self.least_gain && gain >= LEAST_SHARE * area).then_some((parts, polygons, gain))
+        let (low, whole) = (self.whole.lo.0[axis], self.whole.hi.0[axis] - self.whole.lo.0[axis]);
+        let steps = (1u32 << LEVELS) as f32 / whole;
+        let (a, b) = ((r.0.lo.0[axis] - low) * steps, (r.0.hi.0[axis] - low) * steps);
+        // The last of the finest planes is the one wanted, but for its low bits: those that a plane before the first has as well.
+        let (before, last) = ((0.75 * a + 0.25 * b) as u32, (0.25 * a + 0.75 * b) as u32);
+        let level = (before ^ last).checked_ilog2()?;
+        let at = last & (u32::MAX << level);
+        Some((axis, low + whole * (at as f32 / (1u32 << LEVELS) as f32)))
     }
+}
 
-    /// The plane through the middle half of the reference that halves the largest part of the scene's box.
-    fn plane(&self, r: &Reference, axis: usize) -> Option<f32> {
-        let (low, size) = (self.whole.lo.0[axis], self.whole.hi.0[axis] - self.whole.lo.0[axis]);
-        let (a, b) = ((r.0.lo.0[axis] - low) / size, (r.0.hi.0[axis] - low) / size);
-        let (from, to) = (0.75 * a + 0.25 * b, 0.25 * a + 0.75 * b);
-        (1..=LEVELS).find_map(|level| {
-            let parts = (1u32 << level) as f32;
-            let at = (from * parts).ceil() / parts;
-            (at <= to).then_some(low + size * at)
-        })
-    }
+/// The halves of a part; `None` where one is empty, as far as can be told.
+fn parts(of: &Triangle, r: &Reference, polygons: &[Polygon; 2]) -> Option<[Reference; 2]> {
+    let around = r.bounds();
+    let parts = [0, 1].map(|side| {
+        let b = polygons[side].bounds(of.growth);
+        Bounds3 { min: b.min.max(around.min), max: b.max.min(around.max) }
+    });
+    let is_there = |b: &Bounds3| b.min.cmple(b.max).all();
+    parts.iter().all(is_there).then(|| parts.map(|b| Reference::new(&b, of.ids.0, of.ids.1)))
 }
 
 /// What all parts of a triangle share.
@@ -152,6 +195,10 @@ const SHIFT: u32 = 23 - STEPS.trailing_zeros();
 struct Counts([usize; OCTAVES * STEPS]);
 
 impl Counts {
+    fn merge(&mut self, other: &Counts) {
+        self.0.iter_mut().zip(&other.0).for_each(|(own, other)| *own += other);
+    }
+
     fn add(&mut self, gain: f32) {
         let step = gain.to_bits().saturating_sub(1.0_f32.to_bits()) >> SHIFT;
         self.0[(step as usize).min(OCTAVES * STEPS - 1)] += 1;
@@ -176,6 +223,8 @@ impl Counts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Serial;
+    use crate::build::testing::Backwards;
     use crate::triangle::Corners;
     use kirkas_geometry::hash::{combine, unit_f32};
     use kirkas_geometry::{DVec3, Vec3};
@@ -207,7 +256,7 @@ mod tests {
     }
 
     fn presplit_all(triangles: &[Corners], references: &mut Vec<Reference>, room: usize) -> usize {
-        presplit(references, &|r| Some(triangles[r.ids().1 as usize]), room)
+        presplit(references, &|r| Some(triangles[r.ids().1 as usize]), room, &Serial)
     }
 
     #[test]
@@ -225,6 +274,22 @@ mod tests {
             last = now;
         }
         assert!(last < 0.5 * whole, "{last} of {whole}");
+    }
+
+    #[test]
+    fn the_parts_are_the_same_whatever_the_executor() {
+        let triangles = triangles(2000, 3 * SAMPLE_ABOVE);
+        let [a, b]: [&dyn Executor; 2] = [&Serial, &Backwards];
+        let [a, b] = [a, b].map(|executor| {
+            let mut parts = references(&triangles);
+            let more = presplit(&mut parts, &|r| Some(triangles[r.ids().1 as usize]), 6000, executor);
+            assert!((3000..=6000).contains(&more), "{more}");
+            parts
+        });
+        let bits = |r: &Reference| {
+            (r.ids(), r.bounds().min.to_array().map(f32::to_bits), r.bounds().max.to_array().map(f32::to_bits))
+        };
+        assert!(a.iter().map(bits).eq(b.iter().map(bits)));
     }
 
     #[test]

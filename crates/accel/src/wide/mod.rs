@@ -97,11 +97,11 @@ impl Tree {
         // Long triangles first.
         let room = match quality {
             Quality::Best => 0.8,
-            Quality::Default => 0.45,
+            Quality::Default => 0.2,
             Quality::Fast | Quality::Compact => 0.0,
         };
         let room = (count as f32 * room) as usize;
-        let parts = presplit::presplit(&mut references, &corners, room);
+        let parts = presplit::presplit(&mut references, &corners, room, executor);
         let binary = match quality {
             // Where many were long, further cuts take long to find and gain nothing.
             Quality::Best if 4 * parts > room => {
