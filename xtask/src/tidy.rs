@@ -13,7 +13,8 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("images", &["geometry"]),
     ("formats", &["geometry", "scene"]),
     ("render", &["geometry", "scene", "accel", "optics", "images"]),
-    ("cli", &["geometry", "scene", "accel", "images", "formats", "render"]),
+    ("plot", &["geometry"]),
+    ("cli", &["geometry", "scene", "accel", "optics", "images", "formats", "render", "plot"]),
     ("probe", &["scene", "formats", "render"]),
     ("testkit", &["geometry"]),
 ];

@@ -50,6 +50,7 @@ enum Command {
     Merge(commands::merge::Merge),
     Relight(commands::relight::Relight),
     Bench(commands::bench::Bench),
+    Brdf(commands::brdf::Brdf),
     Schema(commands::schema::Schema),
     Completions(commands::completions::Completions),
 }
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
         Command::Merge(args) => commands::merge::run(args),
         Command::Relight(args) => commands::relight::run(args),
         Command::Bench(args) => commands::bench::run(args),
+        Command::Brdf(args) => commands::brdf::run(args),
         Command::Schema(args) => commands::schema::run(args),
         Command::Completions(args) => commands::completions::run(args),
     };

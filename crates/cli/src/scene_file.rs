@@ -37,6 +37,12 @@ impl SceneFile {
         Ok(SceneFile { description, warnings, files, root, meshes, prefix })
     }
 
+    /// A scene that nobody wrote, which may read files below `root`.
+    pub fn described(description: Description, root: PathBuf) -> Self {
+        let files = FileAccess::new(Box::new(DiskFiles::new(root.clone())), Limits::default());
+        SceneFile { description, warnings: Vec::new(), files, root, meshes: Arc::default(), prefix: String::new() }
+    }
+
     /// Answers the renderer's questions.
     pub fn assets(&self) -> FormatAssets<'_> {
         FormatAssets::with_cache(&self.files, &self.description.sources, self.meshes.clone())

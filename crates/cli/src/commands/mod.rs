@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod bench;
+pub mod brdf;
 pub mod check;
 pub mod completions;
 pub mod convert;

@@ -6,6 +6,7 @@ mod adaptive;
 mod aovs;
 mod bench;
 mod bits;
+mod brdf;
 mod commands;
 mod denoise;
 mod errors;
