@@ -129,13 +129,15 @@ fn svg(f: &Folder, args: &[&str]) -> String {
         let (tag, _) = tag.split_once('>').expect("a tag ends");
         let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap();
         match (tag.starts_with('/'), tag.ends_with('/')) {
-            (true, _) => assert_eq!(open.pop(), Some(name), "{text}"),
+            (true, _) => assert_eq!(open.pop(), Some(name)),
             (false, true) => {}
             (false, false) => open.push(name),
         }
-        assert_eq!(tag.matches('"').count() % 2, 0, "{tag}");
+        assert_eq!(tag.matches('"').count() % 2, 0);
     }
-    assert!(open.is_empty() && text.starts_with("<svg ") && !text.contains("NaN") && !text.contains("inf"), "{text}");
+    assert!(open.is_empty() && text.starts_with("<svg "));
+    let is_lost = |line: &str| line.starts_with("<path") && (line.contains("NaN") || line.contains("inf"));
+    assert!(!text.lines().any(is_lost), "a point is no number");
     text
 }
 
@@ -152,7 +154,7 @@ fn slices_have_a_curve_for_every_material_and_incidence() {
             let text = svg(&f, &[&args[..], log].concat());
             assert_eq!(count(&text, "curve"), 6, "{kind} {log:?}");
             assert_eq!(count(&text, "key"), 5, "three materials and two angles");
-            assert!(text.contains("phong specular=0.4") && text.contains("f in 1/sr"), "{text}");
+            assert!(text.contains("phong specular=0.4") && text.contains("f in 1/sr"));
         }
     }
     let one = svg(&f, &["ward", "--vary", "roughness=0.1,0.2,0.3,0.5", "--theta-i", "30", "--title", "A < B"]);
@@ -218,6 +220,76 @@ fn a_png_has_two_pixels_to_a_point_and_is_not_blank() {
     }
 }
 
+#[test]
+fn factors_are_those_of_the_papers() {
+    let f = Folder::new("brdf_factors");
+    let args = ["rough_conductor:ior=1.5,k=2,anisotropy=0.5", "cook_torrance", "--kind", "curves"];
+    // D and G along both tangents of the first, once of the second, and F of each.
+    assert_eq!(count(&svg(&f, &args), "curve"), 3 + 3 + 2);
+    assert_eq!(count(&svg(&f, &[&args[..], &["--log"]].concat()), "curve"), 8);
+}
+
+#[test]
+fn spheres_stand_in_a_row() {
+    let f = Folder::new("brdf_spheres");
+    let args = ["rough_plastic", "--vary", "roughness=0.1,0.5,0.9", "--kind", "spheres", "--spp", "1", "--quiet"];
+    let text = svg(&f, &args);
+    assert_eq!(text.matches("<image ").count(), 3);
+    assert!(text.contains("roughness = 0.9"));
+}
+
+fn compared(f: &Folder, args: &[&str]) -> Value {
+    serde_json::from_str(&f.ok(&[&["brdf", "compare", "--json", "--quiet"], args].concat()).stdout).unwrap()
+}
+
+#[test]
+fn nothing_differs_from_itself() {
+    let f = Folder::new("brdf_same");
+    let same =
+        compared(&f, &["ward:anisotropy=0.5", "ward:anisotropy=0.5", "-o", "same.png", "-o", "same.svg", "--spp", "1"]);
+    for key in ["rms", "relative_rms", "log_rms", "max"] {
+        assert_eq!(same[key], 0.0, "{key}");
+    }
+    assert_eq!(same["reflected"][0]["a"], same["reflected"][0]["b"]);
+    let text = std::fs::read_to_string(f.path("same.svg")).unwrap();
+    assert_eq!(text.matches("<image ").count(), 3, "two spheres and their difference");
+    assert_eq!(count(&text, "curve"), 6, "two materials at three angles");
+    assert!(text.contains("full at 0.05"), "the difference is told with its scale");
+    let image = kirkas_images::decode(&std::fs::read(f.path("same.png")).unwrap(), Some("png")).unwrap();
+    let middle = image.rgb().pixels[(200 * image.width + 1300) as usize];
+    assert!(middle.iter().all(|c| (c - middle[0]).abs() < 1e-3 && *c > 0.8), "no difference is white: {middle:?}");
+}
+
+#[test]
+fn diffusers_differ_by_what_can_be_computed() {
+    // f is 0.5 / pi and 0.2 / pi: the greatest difference of f cos is towards the normal, and RMS errors go with it.
+    let f = Folder::new("brdf_diffusers");
+    let found = compared(&f, &["lambert:reflectance=0.5", "lambert:reflectance=0.2"]);
+    let most = found["max"].as_f64().unwrap();
+    assert!(most <= 0.3 / PI && most > 0.3 / PI * 0.99, "{found}");
+    assert!(near(&found["relative_rms"], 1.5, 1e-6), "{found}");
+    // The mean of cos^2 over all directions within 80 degrees.
+    let c = 80.0_f64.to_radians().cos();
+    let mean_square = (1.0 - c * c * c) / 3.0 / (1.0 - c);
+    assert!(near(&found["rms"], 0.3 / PI * mean_square.sqrt(), 5e-3), "{found}");
+    assert!(near(&found["reflected"][2]["a"], 0.5, 1e-3) && near(&found["reflected"][2]["b"], 0.2, 1e-3), "{found}");
+}
+
+#[test]
+fn measurements_made_of_a_model_are_near_the_model() {
+    use kirkas_geometry::DVec3;
+    let phong = |wo: DVec3, wi: DVec3| {
+        let cosine = DVec3::new(-wo.x, -wo.y, wo.z).dot(wi).max(0.0);
+        let value = 0.3 / PI + 0.4 * 22.0 / (2.0 * PI) * cosine.powi(20);
+        [value; 3]
+    };
+    let f = Folder::new("brdf_merl").file("phong.binary", kirkas_optics::measured::write_merl(phong));
+    let found = compared(&f, &["phong.binary", "phong:diffuse=0.3,specular=0.4,exponent=20"]);
+    assert!(found["relative_rms"].as_f64().unwrap() < 0.01, "{found}");
+    let other = compared(&f, &["phong.binary", "phong:diffuse=0.3,specular=0.4,exponent=40"]);
+    assert!(other["relative_rms"].as_f64().unwrap() > 0.2, "{other}");
+}
+
 macro_rules! refused {
     ($($name:ident: $($arg:expr),*;)*) => {$(
         #[test]
@@ -244,5 +316,8 @@ refused! {
     brdf_plot_kind: "plot", "lambert", "-o", "a.svg", "--kind", "polr";
     brdf_plot_grazing: "plot", "lambert", "-o", "a.svg", "--theta-i", "90";
     brdf_plot_vary: "plot", "ward", "-o", "a.svg", "--vary", "roughness=0.1,2";
+    brdf_plot_factors: "plot", "lambert", "-o", "a.svg", "--kind", "curves";
+    brdf_compare_format: "compare", "lambert", "ward", "-o", "a.exr";
+    brdf_compare_file: "compare", "lambert", "cut.binary";
     brdf_too_many: "eval", "lambert", "--theta-i", "0..90:0.01", "--phi-i", "0..90:0.01";
 }

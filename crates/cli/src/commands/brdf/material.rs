@@ -102,6 +102,19 @@ impl Matter {
         }
     }
 
+    /// The same material as another type, with the parameters that this type knows.
+    pub fn retyped(&self, type_name: &str) -> Result<Self, Problem> {
+        let mut description = self.file.description.clone();
+        let catalog = kirkas_render::catalog();
+        let rows = catalog.find(Kind::Material, type_name).map_or(&[][..], |spec| spec.params);
+        if let Some(e) = description.all_mut(Kind::Material).iter_mut().find(|e| e.name.text == self.name) {
+            e.type_name = Name::new(type_name);
+            e.params.0.retain(|(name, _)| rows.iter().any(|r| r.name == name.text));
+        }
+        let file = SceneFile::described(description, self.file.root.clone());
+        Self::of(file, self.name.clone(), self.label.clone(), self.mode)
+    }
+
     fn of(file: SceneFile, name: String, label: String, mode: ColorMode) -> Result<Self, Problem> {
         // The smallest scene in which it can be looked at.
         let mut description = file.description.clone();

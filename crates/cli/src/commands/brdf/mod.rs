@@ -6,12 +6,18 @@
 
 use crate::problem::{Outcome, Problem};
 
+mod compare;
 mod eval;
 mod plot;
 
+mod factors;
 mod lobes;
 mod maps;
+mod rows;
 mod slices;
+
+mod difference;
+mod studio;
 
 mod albedo;
 mod angles;
@@ -39,6 +45,7 @@ pub struct Brdf {
 enum Command {
     Eval(Box<eval::Eval>),
     Plot(Box<plot::Plot>),
+    Compare(Box<compare::Compare>),
 }
 
 /// Do it.
@@ -46,5 +53,6 @@ pub fn run(args: &Brdf) -> Result<Outcome, Problem> {
     match &args.command {
         Command::Eval(args) => eval::run(args),
         Command::Plot(args) => plot::run(args),
+        Command::Compare(args) => compare::run(args),
     }
 }

@@ -4,7 +4,8 @@ use super::FRAME;
 use super::angles::{Angles, list, upper_thetas};
 use super::look::Channel;
 use super::material::{MaterialArgs, Matter};
-use super::{lobes, maps, sheet, slices};
+use super::studio::StudioArgs;
+use super::{factors, lobes, maps, rows, sheet, slices};
 use crate::problem::{Outcome, Problem};
 use kirkas_plot::Drawing;
 use std::path::PathBuf;
@@ -13,7 +14,8 @@ const EXAMPLES: &str = "Examples:
   kirkas brdf plot phong:specular=0.5 blinn_phong:specular=0.5 -o slice.svg
   kirkas brdf plot rough_conductor:ior.material=gold --vary roughness=0.1,0.3,0.6 --theta-i 60 --kind cartesian --log -o gold.svg
   kirkas brdf plot phong:exponent=80,specular=1 blinn_phong:exponent=320,specular=1 --kind lobes -o lobes.svg
-  kirkas brdf plot gold.binary --kind incidence -o gold.png";
+  kirkas brdf plot rough_plastic --vary roughness=0.05,0.1,0.2,0.4 --kind spheres -o row.png
+  kirkas brdf plot gold.binary --kind incidence --log -o gold.png";
 
 /// What a plot shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -26,6 +28,10 @@ pub enum Kind {
     Lobes,
     /// Maps: over the angles of incidence and reflection, and over half and difference angle
     Incidence,
+    /// The factors of microfacet models: facets D, shadows G, Fresnel's F
+    Curves,
+    /// Lit spheres
+    Spheres,
 }
 
 /// Materials as plots
@@ -64,13 +70,15 @@ pub struct Plot {
     /// Size in points; a PNG has two pixels to a point
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(f64, f64)>,
+    #[command(flatten)]
+    pub studio: StudioArgs,
 }
 
 /// Do it.
 pub fn run(args: &Plot) -> Result<Outcome, Problem> {
     sheet::check(&args.output)?;
     let materials = args.open()?;
-    sheet::write(&args.draw(&materials), &args.output)?;
+    sheet::write(&args.draw(&materials)?, &args.output)?;
     Ok(Outcome::Done)
 }
 
@@ -90,13 +98,15 @@ impl Plot {
         Ok(all)
     }
 
-    fn draw(&self, materials: &[Matter]) -> Drawing {
-        match self.kind {
+    fn draw(&self, materials: &[Matter]) -> Result<Drawing, Problem> {
+        Ok(match self.kind {
             Kind::Polar => slices::polar(self, materials),
             Kind::Cartesian => slices::cartesian(self, materials),
             Kind::Lobes => lobes::draw(self, materials),
             Kind::Incidence => maps::draw(self, materials),
-        }
+            Kind::Curves => factors::draw(self, materials)?,
+            Kind::Spheres => rows::draw(self, materials)?,
+        })
     }
 
     /// Angles of incidence.

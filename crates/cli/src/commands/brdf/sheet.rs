@@ -8,7 +8,7 @@ use kirkas_scene::Diagnostic;
 use std::path::PathBuf;
 
 /// Pixels of a PNG to a point of the drawing.
-pub const PIXELS_PER_POINT: f64 = 2.0;
+const PIXELS_PER_POINT: f64 = 2.0;
 
 /// Make sure, before the work, that these plots can be written after it.
 pub fn check(paths: &[PathBuf]) -> Result<(), Problem> {

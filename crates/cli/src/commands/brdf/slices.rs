@@ -1,7 +1,7 @@
 //! Slices in the plane of incidence: values over the angle at which light leaves.
 
 use super::angles::direction;
-use super::look::Look;
+use super::look::{Channel, Look};
 use super::material::Matter;
 use super::plot::Plot;
 use kirkas_geometry::elementary::cos;
@@ -56,12 +56,11 @@ pub fn polar(args: &Plot, materials: &[Matter]) -> Drawing {
 pub fn cartesian(args: &Plot, materials: &[Matter]) -> Drawing {
     let family = family(args, materials);
     let y = axis(args, &family);
-    let end = if family.is_whole { 180.0 } else { 90.0 };
     let mark = |(theta, color): &(f64, Color)| Mark { x: *theta, label: format!("{theta}°"), color: *color };
     let (width, height) = args.size_or(720.0, 480.0);
     let chart = Chart {
         title: args.title_or("Reflection in the plane of incidence".into()),
-        x: Axis::degrees("θ~o in degrees, positive on the side of the mirrored direction", (-end, end), end / 6.0),
+        x: angle_axis(family.is_whole),
         y,
         marks: family.incident.iter().map(mark).collect(),
         curves: family.slices.into_iter().map(|s| Curve { points: s.points, color: s.color, dash: s.dash }).collect(),
@@ -69,6 +68,39 @@ pub fn cartesian(args: &Plot, materials: &[Matter]) -> Drawing {
         is_square: false,
     };
     chart.draw(width, height)
+}
+
+/// Two materials, a colour for each incidence, the second one dashed.
+pub fn overlaid(materials: &[Matter], thetas: &[f64], (width, height): (f64, f64)) -> Drawing {
+    let looks: Vec<Look> = materials.iter().map(Look::new).collect();
+    let is_whole = looks.iter().any(Look::goes_through);
+    let (mut slices, mut legend) = (Vec::new(), Vec::new());
+    for (t, &theta) in thetas.iter().enumerate() {
+        let color = Color::of_curve(t);
+        for (m, look) in looks.iter().enumerate() {
+            let points = slice((look, Channel::Luminance), (theta, 0.0), 1.0, is_whole);
+            slices.push(Slice { points, color, dash: Dash::of_style(m) });
+        }
+        legend.push(Entry { name: format!("θ~i = {theta}°"), color, dash: Dash::Solid });
+    }
+    let name = |m: usize| format!("{}: {}", ["A", "B"][m % 2], materials[m].label);
+    legend.extend((0..materials.len()).map(|m| Entry { name: name(m), color: Color::GREY, dash: Dash::of_style(m) }));
+    let values = slices.iter().flat_map(|s| s.points.iter().map(|p| p[1]));
+    let chart = Chart {
+        title: String::new(),
+        x: angle_axis(is_whole),
+        y: Axis::of_values("f in 1/sr", values, Scale::Log, DECADES),
+        marks: Vec::new(),
+        curves: slices.into_iter().map(|s| Curve { points: s.points, color: s.color, dash: s.dash }).collect(),
+        legend,
+        is_square: false,
+    };
+    chart.draw(width, height)
+}
+
+fn angle_axis(is_whole: bool) -> Axis {
+    let end = if is_whole { 180.0 } else { 90.0 };
+    Axis::degrees("θ~o in degrees, positive on the side of the mirrored direction", (-end, end), end / 6.0)
 }
 
 fn axis(args: &Plot, family: &Family) -> Axis {
@@ -89,7 +121,9 @@ fn family(args: &Plot, materials: &[Matter]) -> Family {
     for (m, look) in looks.iter().enumerate() {
         for (t, &theta) in thetas.iter().enumerate() {
             let (color, dash) = style(m, t);
-            slices.push(Slice { points: slice(args, look, theta, is_whole), color, dash });
+            let cosine = if args.with_cosine { cos(theta.to_radians()) } else { 1.0 };
+            let points = slice((look, args.channel), (theta, args.phi_i), cosine, is_whole);
+            slices.push(Slice { points, color, dash });
         }
     }
     let incidence = |theta: f64| format!("θ~i = {theta}°");
@@ -115,14 +149,18 @@ fn family(args: &Plot, materials: &[Matter]) -> Family {
     Family { slices, legend, incident, is_whole }
 }
 
-fn slice(args: &Plot, look: &Look, theta_i: f64, is_whole: bool) -> Vec<[f64; 2]> {
-    let wi = direction(theta_i, args.phi_i);
-    let cosine = if args.with_cosine { cos(theta_i.to_radians()) } else { 1.0 };
+fn slice(
+    (look, channel): (&Look, Channel),
+    (theta_i, phi_i): (f64, f64),
+    cosine: f64,
+    is_whole: bool,
+) -> Vec<[f64; 2]> {
+    let wi = direction(theta_i, phi_i);
     let end = if is_whole { 180.0 } else { 90.0 };
     let count = (end / STEP).round() as i32;
     let value = |angle: f64| {
-        let phi = if angle < 0.0 { args.phi_i } else { args.phi_i + 180.0 };
-        args.channel.of(look.rgb(wi, direction(angle.abs(), phi), LobeSet::ALL)) * cosine
+        let phi = if angle < 0.0 { phi_i } else { phi_i + 180.0 };
+        channel.of(look.rgb(wi, direction(angle.abs(), phi), LobeSet::ALL)) * cosine
     };
     // Just above the horizon in place of on it.
     let shown = |angle: f64| if angle.abs() == 90.0 { angle * (1.0 - 1e-5) } else { angle };
