@@ -247,6 +247,7 @@ fn takes(ty: ParamType) -> String {
         ParamType::Index => "number or table".into(),
         ParamType::ColorTexture => "colour or texture".into(),
         ParamType::NumberTexture => "number or texture".into(),
+        ParamType::VectorTexture => "`[x, y, z]` or texture".into(),
         ParamType::Reference(kind) => format!("name of {}", article(kind.singular())),
         ParamType::References(kind) => format!("list of names of {}", kind.section()),
         ParamType::Path => "path".into(),

@@ -126,6 +126,9 @@ fn value(row: &ParamSpec) -> Json {
             any_of([grey, rgb, named, reference("wave_color")])
         }
         ParamType::NumberTexture => any_of([number(), described(of_type("string"), "the name of a texture")]),
+        ParamType::VectorTexture => {
+            any_of([list(number(), Some(3)), described(of_type("string"), "the name of a texture")])
+        }
         ParamType::Transform => reference("transform"),
         ParamType::Motion => reference("motion"),
         ParamType::Numbers => list(number(), None),

@@ -219,12 +219,16 @@ impl Lanes {
     }
 
     /// An evaluated parameter, as the models take it, by its table row: colours as [`Lanes::reflectance`] where the
-    /// row's range ends at 1, else [`Lanes::unbounded`]; numbers (the mean of `rgb`) clamped into the range, in every lane.
+    /// row's range ends at 1, else [`Lanes::unbounded`]; numbers (the mean of `rgb`) clamped into the range, in every lane; vectors as they are.
     pub fn parameter(&self, row: &ParamSpec, rgb: [f32; 3]) -> Light {
         let (low, high) = (row.range.0 as f32, row.range.1 as f32);
         match row.ty {
             ParamType::NumberTexture | ParamType::Number => {
                 Light::splat(((rgb[0] + rgb[1] + rgb[2]) / 3.0).max(low).min(high))
+            }
+            ParamType::VectorTexture => {
+                let [x, y, z] = rgb.map(|c| c.max(low).min(high));
+                Light([x, y, z, 0.0])
             }
             _ if high <= 1.0 => self.reflectance(rgb),
             _ => self.unbounded(rgb),

@@ -28,6 +28,8 @@ pub enum ParamType {
     Index,
     /// A number, or the name of a texture (its mean of r, g, b).
     NumberTexture,
+    /// Three numbers, or the name of a texture whose red, green and blue they are.
+    VectorTexture,
     /// The name of another entity.
     Reference(Kind),
     /// Several names.

@@ -123,6 +123,10 @@ fn check_value(d: &Description, row: &ParamSpec, name: &Name, node: &Node, found
             Some(t) => reference(Kind::Texture, t, node.span, found),
             None => found.push(mismatch("a number or the name of a texture")),
         },
+        ParamType::VectorTexture if !list_of(3) => match node.text() {
+            Some(t) => reference(Kind::Texture, t, node.span, found),
+            None => found.push(mismatch("three numbers [x, y, z] or the name of a texture")),
+        },
         ParamType::Transform => found.extend(read_transform(node).err()),
         ParamType::Motion => found.extend(read_motion(node).err()),
         ParamType::Numbers if !node.list().is_some_and(|l| l.iter().all(|n| n.number().is_some())) => {

@@ -15,6 +15,8 @@
 //! a body the factors cancel; a camera *inside* a medium of index n sees n^2 the radiance, as is right, and a renderer that
 //! wants its exposure independent of that divides by n^2.
 //!
+//! **Composed models** are made of other materials ([`Parts`]); they stand last in the list.
+//!
 //! To add a model: write `NAME.rs` beside this file (start from `lambert.rs`), and add `pub mod NAME;` and its row in
 //! `models!` below.
 
@@ -23,7 +25,9 @@ use kirkas_geometry::Vec3;
 use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 
 pub mod ashikhmin_shirley;
+pub mod blend;
 pub mod blinn_phong;
+pub mod bump_map;
 pub mod conductor;
 pub mod cook_torrance;
 pub mod dielectric;
@@ -31,9 +35,11 @@ pub mod emitter;
 pub mod hull;
 pub mod lafortune;
 pub mod lambert;
+pub mod mask;
 pub mod measured;
 pub mod microfacet_table;
 pub mod mirror;
+pub mod normal_map;
 pub mod oren_nayar;
 pub mod phong;
 pub mod plastic;
@@ -42,7 +48,9 @@ pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod rough_mirror;
 pub mod rough_plastic;
+pub mod sum;
 pub mod thin_dielectric;
+pub mod two_sided;
 pub mod velvet;
 pub mod ward;
 
@@ -52,13 +60,18 @@ mod conductor_body;
 mod film;
 mod lobes;
 mod mirror_body;
+mod mixture;
 mod opaque;
+mod parts;
 mod phong_body;
 mod rough_coat;
 mod roughness;
+mod sides;
+mod tilt;
 
 pub use boundary::Interface;
 pub use lobes::{Lobe, LobeSet};
+pub use parts::{MOST_PARTS, NoParts, Parts, Shares, part_names};
 
 models! {
     lambert Lambert,
@@ -84,6 +97,13 @@ models! {
     velvet Velvet,
     microfacet_table MicrofacetTable,
     principled Principled,
+    ;
+    sum Sum,
+    blend Blend,
+    mask Mask,
+    two_sided TwoSided,
+    normal_map NormalMap,
+    bump_map BumpMap,
 }
 
 /// What travels along `wo`.
@@ -125,16 +145,30 @@ impl BsdfSample {
     }
 }
 
-/// Up to two delta lobes, the reflected one first. Their `f` is whole: `pdf` is 1, nothing was drawn.
+/// Delta lobes, of a plain model up to two, the reflected one first. Their `f` is whole: `pdf` is 1, nothing was drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Branches {
-    items: [Option<BsdfSample>; 2],
+    items: [Option<BsdfSample>; MOST_BRANCHES],
 }
 
+const MOST_BRANCHES: usize = 6;
+
 impl Branches {
+    /// One more. Those that go the same way are one; what finds no place is left out.
     fn push(&mut self, s: BsdfSample) {
-        let slot = usize::from(self.items[0].is_some());
-        self.items[slot] = Some(s);
+        for item in &mut self.items {
+            match item {
+                None => {
+                    *item = Some(s);
+                    return;
+                }
+                Some(known) if known.lobe == s.lobe && (known.wi - s.wi).length() < 1e-5 => {
+                    known.f += s.f;
+                    return;
+                }
+                Some(_) => {}
+            }
+        }
     }
 
     /// In order.
@@ -145,7 +179,7 @@ impl Branches {
 
 impl IntoIterator for Branches {
     type Item = BsdfSample;
-    type IntoIter = core::iter::Flatten<core::array::IntoIter<Option<BsdfSample>, 2>>;
+    type IntoIter = core::iter::Flatten<core::array::IntoIter<Option<BsdfSample>, MOST_BRANCHES>>;
     fn into_iter(self) -> Self::IntoIter {
         self.items.into_iter().flatten()
     }
@@ -162,6 +196,24 @@ trait Prepare: Sized {
     /// The filling, if the surface bounds one.
     fn medium(&self) -> Option<&Medium> {
         None
+    }
+}
+
+/// A material made of others, with its fixed parameters read: once per material.
+trait Compose: Sized {
+    /// From validated parameters.
+    fn prepare(params: &Params, palette: &Palette) -> Self;
+    /// With the values of its texture rows, in table order.
+    fn at(&self, slots: &[Light], parts: &dyn Parts) -> Bsdf;
+    /// How much each part counts here, on the front or on the back.
+    fn shares(&self, slots: &[Light], is_front: bool) -> Shares;
+    /// The texture row that says how much of it is there.
+    fn opacity_row(&self) -> Option<usize> {
+        None
+    }
+    /// Lets nothing through, whatever its parts do.
+    fn is_opaque(&self) -> bool {
+        false
     }
 }
 
@@ -188,7 +240,7 @@ pub fn texture_rows(spec: &'static TypeSpec) -> impl Iterator<Item = &'static Pa
 }
 
 const fn is_texture(ty: ParamType) -> bool {
-    matches!(ty, ParamType::ColorTexture | ParamType::NumberTexture)
+    matches!(ty, ParamType::ColorTexture | ParamType::NumberTexture | ParamType::VectorTexture)
 }
 
 /// Place of the row `name` among the texture rows; an unknown name does not compile.
@@ -215,15 +267,16 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
 }
 
 macro_rules! models {
-    ($($module:ident $Name:ident),* $(,)?) => {
+    ($($module:ident $Name:ident,)* ; $($composed:ident $Composed:ident,)*) => {
         /// The tables of all models, in listed order.
-        pub const SPECS: &[TypeSpec] = &[$($module::SPEC),*];
+        pub const SPECS: &[TypeSpec] = &[$($module::SPEC,)* $($composed::SPEC,)*];
 
         /// A model with its fixed parameters read: once per material.
         #[derive(Clone, Debug)]
         #[allow(missing_docs)]
         pub enum BsdfModel {
-            $($Name($module::Prepared)),*
+            $($Name($module::Prepared),)*
+            $($Composed($composed::Prepared),)*
         }
 
         impl BsdfModel {
@@ -232,30 +285,60 @@ macro_rules! models {
                 $(if params.spec().name == $module::SPEC.name {
                     return Some(BsdfModel::$Name(Prepare::prepare(params, palette)));
                 })*
+                $(if params.spec().name == $composed::SPEC.name {
+                    return Some(BsdfModel::$Composed(Compose::prepare(params, palette)));
+                })*
                 None
             }
 
             /// Its table.
             pub fn spec(&self) -> &'static TypeSpec {
                 match self {
-                    $(BsdfModel::$Name(_) => &$module::SPEC),*
+                    $(BsdfModel::$Name(_) => &$module::SPEC,)*
+                    $(BsdfModel::$Composed(_) => &$composed::SPEC,)*
                 }
             }
 
             /// The model at a point: `slots` are the values of its [`texture_rows`] (by
             /// [`Lanes::parameter`](crate::Lanes::parameter)), black for one that is absent; `interface` the refractive
-            /// indices on both sides (the same twice where the surface bounds no medium).
+            /// indices on both sides (the same twice where the surface bounds no medium); `parts` what it is made of, if it is.
             #[inline]
-            pub fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface) -> Bsdf {
+            pub fn at(&self, lanes: &Lanes, slots: &[Light], interface: Interface, parts: &dyn Parts) -> Bsdf {
                 match self {
-                    $(BsdfModel::$Name(m) => Bsdf::$Name(m.at(lanes, slots, interface))),*
+                    $(BsdfModel::$Name(m) => Bsdf::$Name(m.at(lanes, slots, interface)),)*
+                    $(BsdfModel::$Composed(m) => m.at(slots, parts),)*
                 }
             }
 
-            /// What fills the body, if its surface is a boundary between media.
+            /// How much each of its parts counts at a point, on the front or on the back.
+            pub fn shares(&self, slots: &[Light], is_front: bool) -> Shares {
+                match self {
+                    $(BsdfModel::$Composed(m) => m.shares(slots, is_front),)*
+                    _ => [0.0; MOST_PARTS],
+                }
+            }
+
+            /// The texture row of a composed model that says how much of it is there.
+            pub fn opacity_row(&self) -> Option<usize> {
+                match self {
+                    $(BsdfModel::$Composed(m) => m.opacity_row(),)*
+                    _ => None,
+                }
+            }
+
+            /// True for composed models that let nothing through, whatever their parts do.
+            pub fn is_opaque(&self) -> bool {
+                match self {
+                    $(BsdfModel::$Composed(m) => m.is_opaque(),)*
+                    _ => false,
+                }
+            }
+
+            /// What fills the body, if its surface is a boundary between media. (A composed model asks its parts.)
             pub fn medium(&self) -> Option<&Medium> {
                 match self {
-                    $(BsdfModel::$Name(m) => m.medium()),*
+                    $(BsdfModel::$Name(m) => m.medium(),)*
+                    _ => None,
                 }
             }
         }
@@ -264,34 +347,44 @@ macro_rules! models {
         #[derive(Clone, Debug)]
         #[allow(missing_docs)]
         pub enum Bsdf {
-            $($Name($module::$Name)),*
+            $($Name($module::$Name),)*
+            Mixture(mixture::Mixture),
+            Sides(sides::Sides),
+            Tilted(tilt::Tilted),
+        }
+
+        /// The body of a function of `Scatter`, for each variant.
+        macro_rules! each {
+            ($bsdf:ident, $b:ident => $answer:expr) => {
+                match $bsdf {
+                    $(Bsdf::$Name($b) => $answer,)*
+                    Bsdf::Mixture($b) => $answer,
+                    Bsdf::Sides($b) => $answer,
+                    Bsdf::Tilted($b) => $answer,
+                }
+            };
         }
 
         impl Bsdf {
             /// The lobes it has here.
             pub fn lobes(&self) -> LobeSet {
-                match self {
-                    $(Bsdf::$Name(b) => b.lobes()),*
-                }
+                each!(self, b => b.lobes())
             }
 
             /// The value (1/sr, no cosine) of the lobes asked for; delta lobes count nothing.
             #[inline]
             pub fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
-                match self {
-                    $(Bsdf::$Name(b) => b.eval(wo, wi, lobes, mode)),*
-                }
+                each!(self, b => b.eval(wo, wi, lobes, mode))
             }
 
             /// The density per solid angle with which [`Bsdf::sample`] with the same lobes gives `wi`.
             #[inline]
             pub fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> f32 {
-                match self {
-                    $(Bsdf::$Name(b) => b.pdf(wo, wi, lobes, mode)),*
-                }
+                each!(self, b => b.pdf(wo, wi, lobes, mode))
             }
 
-            /// A direction drawn from the lobes asked for; `u_lobe` picks the lobe, `u` the direction, all in `[0, 1)`.
+            /// A direction drawn from the lobes asked for; `u_lobe` picks the lobe (not looked at where there is one only), `u`
+            /// the direction, all in `[0, 1)`.
             /// `None`: this sample carries nothing.
             #[inline]
             pub fn sample(
@@ -302,31 +395,23 @@ macro_rules! models {
                 lobes: LobeSet,
                 mode: Mode,
             ) -> Option<BsdfSample> {
-                match self {
-                    $(Bsdf::$Name(b) => b.sample(wo, u_lobe, u, lobes, mode)),*
-                }
+                each!(self, b => b.sample(wo, u_lobe, u, lobes, mode))
             }
 
             /// All its delta lobes with their whole weights, for a Whitted tree.
             pub fn delta_branches(&self, wo: Vec3, mode: Mode) -> Branches {
-                match self {
-                    $(Bsdf::$Name(b) => b.delta_branches(wo, mode)),*
-                }
+                each!(self, b => b.delta_branches(wo, mode))
             }
 
             /// The glossy lobes that stand for blurred mirrors and panes: a Whitted tree follows each with rays of its
             /// own, from [`Bsdf::sample`] with that one lobe. (A Phong highlight is not one of them.)
             pub fn traced_lobes(&self) -> LobeSet {
-                match self {
-                    $(Bsdf::$Name(b) => b.traced_lobes()),*
-                }
+                each!(self, b => b.traced_lobes())
             }
 
             /// What ambient light, the classics' stand-in for all indirect light, is multiplied by.
             pub fn ambient(&self) -> Light {
-                match self {
-                    $(Bsdf::$Name(b) => b.ambient()),*
-                }
+                each!(self, b => b.ambient())
             }
         }
     };

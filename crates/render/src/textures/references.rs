@@ -112,7 +112,7 @@ fn references<'a>(entity: &'a Entity, catalog: &Catalog, found: &mut Vec<Diagnos
     };
     catalog
         .rows(spec)
-        .filter(|row| matches!(row.ty, ParamType::ColorTexture | ParamType::NumberTexture))
+        .filter(|row| matches!(row.ty, ParamType::ColorTexture | ParamType::NumberTexture | ParamType::VectorTexture))
         .filter_map(|row| entity.params.get(row.name))
         .filter_map(|node| Some((texture_name(node)?, node.span)))
         .collect()
