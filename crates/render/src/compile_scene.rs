@@ -14,7 +14,7 @@ use crate::integrators::{INTEGRATORS, Integrator, MediumStack};
 use crate::lights::collect::{add_area_lights, scene_radius};
 use crate::lights::pick::LightPicker;
 use crate::lights::{Lamp, LightEntry, ambient_radiance};
-use crate::materials::Material;
+use crate::materials;
 use crate::media::Volume;
 use crate::placement::{PlacedPart, Placement, place_objects};
 use crate::sampler::{SamplerKind, frame_seed};
@@ -295,16 +295,8 @@ fn compile(
     let mut volumes = Volume::compile_all(d, catalog, &palette, assets).map_err(|d| vec![d])?;
     let textures = Textures::compile(d, catalog, assets)?;
     let params = |kind, entity| Params::new(entity, kind, catalog).expect("the description was validated");
-    let materials: Vec<Material> = d
-        .all(Kind::Material)
-        .iter()
-        .filter_map(|e| {
-            let interior = e.params.get("interior").and_then(|n| n.text()).and_then(medium_number);
-            let mut material = Material::new(&params(Kind::Material, e), textures.names(), &palette)?;
-            material.interior = interior;
-            Some(material)
-        })
-        .collect();
+    let interior = |e: &Entity| e.params.get("interior").and_then(|n| n.text()).and_then(medium_number);
+    let materials = materials::compile_all(d, catalog, textures.names(), &palette, &interior)?;
 
     // The camera.
     let camera = compile_camera(d, catalog, singles)?;

@@ -70,7 +70,7 @@ impl Compose for Prepared {
         Prepared
     }
 
-    fn shares(&self, slots: &[Light], _: bool) -> Shares {
+    fn shares(&self, slots: &[Light]) -> Shares {
         let mut shares = [0.0; MOST_PARTS];
         shares[0] = 1.0 - slots[AMOUNT][0];
         shares[1] = slots[AMOUNT][0];
@@ -78,7 +78,7 @@ impl Compose for Prepared {
     }
 
     fn at(&self, slots: &[Light], parts: &dyn Parts) -> Bsdf {
-        let shares = self.shares(slots, true);
+        let shares = self.shares(slots);
         // One alone needs no company.
         match (shares[0], shares[1]) {
             (_, 0.0) => parts.part(0),

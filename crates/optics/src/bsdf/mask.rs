@@ -32,7 +32,7 @@
 //! T. Porter & T. Duff, "Compositing Digital Images", 1984.
 
 use super::parts::{FIRST, Parts, Shares};
-use super::{Bsdf, Compose, slot};
+use super::{Bsdf, Compose};
 use crate::{Light, Palette};
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec};
@@ -47,7 +47,6 @@ pub const SPEC: TypeSpec = TypeSpec {
         ParamSpec::number_texture("opacity", 1.0, UNIT, "1 there, 0 a hole; an image's alpha channel if it has one"),
     ],
 };
-const OPACITY: usize = slot(SPEC.params, "opacity");
 
 /// Nothing is fixed.
 #[derive(Clone, Debug)]
@@ -58,15 +57,11 @@ impl Compose for Prepared {
         Prepared
     }
 
-    fn shares(&self, _: &[Light], _: bool) -> Shares {
+    fn shares(&self, _: &[Light]) -> Shares {
         FIRST
     }
 
     fn at(&self, _: &[Light], parts: &dyn Parts) -> Bsdf {
         parts.part(0)
-    }
-
-    fn opacity_row(&self) -> Option<usize> {
-        Some(OPACITY)
     }
 }

@@ -27,7 +27,6 @@ use kirkas_scene::{ParamSpec, ParamType, Params, TypeSpec};
 pub mod ashikhmin_shirley;
 pub mod blend;
 pub mod blinn_phong;
-pub mod bump_map;
 pub mod conductor;
 pub mod cook_torrance;
 pub mod dielectric;
@@ -103,7 +102,6 @@ models! {
     mask Mask,
     two_sided TwoSided,
     normal_map NormalMap,
-    bump_map BumpMap,
 }
 
 /// What travels along `wo`.
@@ -205,12 +203,8 @@ trait Compose: Sized {
     fn prepare(params: &Params, palette: &Palette) -> Self;
     /// With the values of its texture rows, in table order.
     fn at(&self, slots: &[Light], parts: &dyn Parts) -> Bsdf;
-    /// How much each part counts here, on the front or on the back.
-    fn shares(&self, slots: &[Light], is_front: bool) -> Shares;
-    /// The texture row that says how much of it is there.
-    fn opacity_row(&self) -> Option<usize> {
-        None
-    }
+    /// How much each part counts here.
+    fn shares(&self, slots: &[Light]) -> Shares;
     /// Lets nothing through, whatever its parts do.
     fn is_opaque(&self) -> bool {
         false
@@ -310,19 +304,11 @@ macro_rules! models {
                 }
             }
 
-            /// How much each of its parts counts at a point, on the front or on the back.
-            pub fn shares(&self, slots: &[Light], is_front: bool) -> Shares {
+            /// How much each of its parts counts at a point.
+            pub fn shares(&self, slots: &[Light]) -> Shares {
                 match self {
-                    $(BsdfModel::$Composed(m) => m.shares(slots, is_front),)*
+                    $(BsdfModel::$Composed(m) => m.shares(slots),)*
                     _ => [0.0; MOST_PARTS],
-                }
-            }
-
-            /// The texture row of a composed model that says how much of it is there.
-            pub fn opacity_row(&self) -> Option<usize> {
-                match self {
-                    $(BsdfModel::$Composed(m) => m.opacity_row(),)*
-                    _ => None,
                 }
             }
 

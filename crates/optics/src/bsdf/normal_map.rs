@@ -76,7 +76,7 @@ impl Compose for Prepared {
         Prepared
     }
 
-    fn shares(&self, _: &[Light], _: bool) -> Shares {
+    fn shares(&self, _: &[Light]) -> Shares {
         FIRST
     }
 

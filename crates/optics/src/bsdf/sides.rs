@@ -31,11 +31,7 @@ impl Scatter for Sides {
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> f32 {
-        if wo.z * wi.z > 0.0 {
-            self.seen_from(wo).pdf(upper(wo, wo), upper(wi, wo), lobes & KEPT, mode)
-        } else {
-            0.0
-        }
+        if wo.z * wi.z > 0.0 { self.seen_from(wo).pdf(upper(wo, wo), upper(wi, wo), lobes & KEPT, mode) } else { 0.0 }
     }
 
     fn sample(&self, wo: Vec3, u_lobe: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample> {

@@ -75,7 +75,7 @@ impl Compose for Prepared {
         Prepared { shares: core::array::from_fn(|i| if i < count { weight(i) / over } else { 0.0 }) }
     }
 
-    fn shares(&self, _: &[Light], _: bool) -> Shares {
+    fn shares(&self, _: &[Light]) -> Shares {
         self.shares
     }
 

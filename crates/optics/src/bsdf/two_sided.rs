@@ -30,6 +30,7 @@
 //! ## Limits
 //!
 //! Only what its parts reflect is kept: glass becomes a sheet that swallows what it would let through. Each side acts as in vacuum.
+//! Where the parts have holes the sheet has as many as both on average.
 //!
 //! ## References
 //!
@@ -63,9 +64,10 @@ impl Compose for Prepared {
         Prepared { back: usize::from(params.has("back")) }
     }
 
-    fn shares(&self, _: &[Light], is_front: bool) -> Shares {
+    fn shares(&self, _: &[Light]) -> Shares {
         let mut shares = [0.0; MOST_PARTS];
-        shares[if is_front { 0 } else { self.back }] = 1.0;
+        shares[0] = 0.5;
+        shares[self.back] += 0.5;
         shares
     }
 

@@ -311,7 +311,6 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "material=silver normals=0.6,0.7,0.9",
             "material=clay",
         ],
-        "bump_map" => &["material=gloss", "material=wall strength=2", "material=clay strength=-1"],
         other => panic!("no parameter sets for `{other}`: add at least three here"),
     }
 }

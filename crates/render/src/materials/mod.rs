@@ -1,13 +1,18 @@
 //! Materials: a model of `optics` whose parameters may be textures, an opacity, and what the surface emits. The models and
-//! their tables live in `optics`; here textures become values.
+//! their tables live in `optics`; here textures become values, and composed materials find their parts.
+
+mod compose;
+
+pub use compose::compile_all;
 
 use crate::lights::units::EFFICACY;
 use crate::shapes::Detail;
 use crate::textures::{ColorSource, NumberSource, TextureNames, TexturePoint, Textures};
-use kirkas_optics::bsdf::texture_rows;
-use kirkas_optics::{Bsdf, BsdfModel, Interface, Lanes, Light, Medium, Palette, Spectrum};
+use kirkas_optics::bsdf::{Parts, Shares, texture_rows};
+use kirkas_optics::{Bsdf, BsdfModel, Index, Interface, Lanes, Light, Medium, Palette, Spectrum};
 use kirkas_scene::spec::UNIT;
 use kirkas_scene::{ParamSpec, ParamType, Params};
+use std::sync::Arc;
 
 /// What every material takes.
 pub const COMMON: &[ParamSpec] = &[ParamSpec::number_texture(
@@ -21,12 +26,17 @@ pub const COMMON: &[ParamSpec] = &[ParamSpec::number_texture(
 const MOST_ROWS: usize = 16;
 
 /// A compiled material.
+#[derive(Clone)]
 pub struct Material {
     /// Its name.
     pub name: String,
     model: BsdfModel,
     rows: Vec<Row>,
     alpha: NumberSource,
+    /// The opacity of a mask.
+    opacity: NumberSource,
+    /// What it is made of.
+    parts: Vec<Arc<Material>>,
     /// What it emits.
     pub emission: Option<Emission>,
     /// What fills the body, if the surface bounds one.
@@ -41,14 +51,18 @@ pub struct Material {
 }
 
 /// One texture row of the model.
+#[derive(Clone)]
 struct Row {
     spec: &'static ParamSpec,
     value: Value,
 }
 
 /// What a row says.
+#[derive(Clone)]
 enum Value {
     Absent,
+    /// The same vector everywhere.
+    Vector([f32; 3]),
     /// The same number everywhere.
     Number(f32),
     /// The same colour everywhere.
@@ -65,6 +79,7 @@ impl Row {
         let value = match (source, spec.ty) {
             (None, _) => Value::Absent,
             (Some(ColorSource::Texture(number)), _) => Value::Texture(number),
+            (Some(ColorSource::Constant(v)), ParamType::VectorTexture) => Value::Vector(v),
             (Some(ColorSource::Constant(c)), ParamType::NumberTexture) => {
                 Value::Number(Lanes::RGB.parameter(spec, c)[0])
             }
@@ -78,6 +93,7 @@ impl Row {
     fn at(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> Light {
         match &self.value {
             Value::Absent => Light::BLACK,
+            Value::Vector(v) => lanes.parameter(self.spec, *v),
             Value::Number(x) => Light::splat(*x),
             Value::Color(spectrum) => spectrum.at(lanes),
             Value::Texture(number) => lanes.parameter(self.spec, textures.color(ColorSource::Texture(*number), at)),
@@ -114,11 +130,22 @@ enum Unit {
 }
 
 impl Material {
-    /// From its parameters; `None` if the type is not a model's.
+    /// From its parameters, made of nothing else; `None` if the type is not a model's.
     pub fn new(params: &Params, names: &TextureNames, palette: &Palette) -> Option<Material> {
+        Self::composed(params, names, palette, Vec::new())
+    }
+
+    /// From its parameters and what it is made of.
+    fn composed(
+        params: &Params,
+        names: &TextureNames,
+        palette: &Palette,
+        parts: Vec<Arc<Material>>,
+    ) -> Option<Material> {
         let model = BsdfModel::prepare(params, palette)?;
         let source = |row: &'static ParamSpec| match (row.ty, row.fallback) {
             (ParamType::NumberTexture, _) => Some(names.number(params, row.name).into()),
+            (ParamType::VectorTexture, _) => Some(names.vector(params, row.name)),
             (_, kirkas_scene::Fallback::Absent) => names.optional_color(params, row.name),
             _ => Some(names.color(params, row.name)),
         };
@@ -126,24 +153,36 @@ impl Material {
             texture_rows(params.spec()).map(|spec| Row::new(spec, source(spec), params, palette)).collect();
         debug_assert!(rows.len() <= MOST_ROWS);
         let alpha = names.number(params, "alpha");
-        let emission = (params.spec().name == "emitter").then(|| Emission::new(params, names, palette));
+        let is_mask = params.spec().name == "mask";
+        let opacity = if is_mask { names.number(params, "opacity") } else { NumberSource::Constant(1.0) };
+        let emission = match params.spec().name {
+            "emitter" => Some(Emission::new(params, names, palette)),
+            "mask" => parts.first().and_then(|part| part.emission.clone()),
+            _ => None,
+        };
         let is_textured = rows.iter().any(|row| matches!(row.value, Value::Texture(_)))
             || matches!(alpha, NumberSource::Texture(_))
+            || matches!(opacity, NumberSource::Texture(_))
+            || parts.iter().any(|part| part.detail == Detail::Texture)
             || emission.as_ref().is_some_and(Emission::is_textured);
-        let medium = model.medium().cloned();
+        // What a composed material bounds is what its first part does that bounds anything.
+        let body = parts.iter().find(|part| part.medium.is_some() && !model.is_opaque());
+        let medium = model.medium().cloned().or_else(|| body.and_then(|part| part.medium.clone()));
         let is_constant =
             params.spec().params.iter().any(|r| r.name == "fresnel") && params.text("fresnel") == Some("constant");
         Some(Material {
             name: params.entity.name.text.clone(),
             rows,
             alpha,
+            opacity,
             emission,
             detail: if is_textured { Detail::Texture } else { Detail::Place },
-            scales_radiance: !is_constant,
+            scales_radiance: body.map_or(!is_constant, |part| part.scales_radiance),
             medium,
-            interior: None,
+            interior: body.and_then(|part| part.interior),
             is_hull: params.spec().name == "hull",
             model,
+            parts,
         })
     }
 
@@ -157,22 +196,42 @@ impl Material {
 
     /// True when every hit counts.
     pub fn is_opaque(&self) -> bool {
-        self.alpha == NumberSource::Constant(1.0)
+        let is_whole = |source: NumberSource| source == NumberSource::Constant(1.0);
+        is_whole(self.alpha) && is_whole(self.opacity) && self.parts.iter().all(|part| part.is_opaque())
     }
 
     /// Opacity at a point.
     pub fn alpha(&self, textures: &Textures, at: &TexturePoint) -> f32 {
-        textures.alpha(self.alpha, at)
+        let own = textures.alpha(self.alpha, at);
+        if self.parts.is_empty() {
+            return own;
+        }
+        let shares = self.shares(&Lanes::RGB, textures, at);
+        let there: f32 = self.parts.iter().zip(shares).map(|(part, share)| share * part.alpha(textures, at)).sum();
+        let all: f32 = shares.iter().sum();
+        own * textures.alpha(self.opacity, at) * if all > 0.0 { there / all } else { 1.0 }
+    }
+
+    /// How much each part counts at a point.
+    fn shares(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> Shares {
+        self.model.shares(&self.slots(lanes, textures, at)[..self.rows.len()])
+    }
+
+    #[inline(always)]
+    fn slots(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint) -> [Light; MOST_ROWS] {
+        let mut slots = [Light::BLACK; MOST_ROWS];
+        for (slot, row) in slots.iter_mut().zip(&self.rows) {
+            *slot = row.at(lanes, textures, at);
+        }
+        slots
     }
 
     /// The model at a point.
     #[inline(always)]
     pub fn bsdf(&self, lanes: &Lanes, textures: &Textures, at: &TexturePoint, interface: Interface) -> Bsdf {
-        let mut slots = [Light::BLACK; MOST_ROWS];
-        for (slot, row) in slots.iter_mut().zip(&self.rows) {
-            *slot = row.at(lanes, textures, at);
-        }
-        self.model.at(lanes, &slots[..self.rows.len()], interface)
+        let slots = self.slots(lanes, textures, at);
+        let parts = PartsHere { material: self, lanes, textures, at, interface };
+        self.model.at(lanes, &slots[..self.rows.len()], interface, &parts)
     }
 
     /// What a straight shadow ray keeps on its way through the surface (the classics' coloured shadows): the constant or
@@ -181,6 +240,11 @@ impl Material {
         self.medium.as_ref()?;
         if self.is_hull {
             return Some(Light::splat(1.0));
+        }
+        if !self.parts.is_empty() {
+            let shares = self.shares(lanes, textures, at);
+            let passed = |part: &Material| part.straight_transmittance(lanes, textures, at).unwrap_or(Light::BLACK);
+            return Some(self.parts.iter().zip(shares).map(|(part, share)| passed(part) * share).sum());
         }
         let named = |n: &str| self.rows.iter().find(|row| row.spec.name == n);
         let row = named("transmittance").or_else(|| named("transmit"))?;
@@ -193,9 +257,43 @@ impl Material {
         if !ambient.is_black() {
             return Lanes::RGB.to_film(ambient);
         }
+        if !self.parts.is_empty() {
+            let mut sum = [0.0; 3];
+            for (part, share) in self.parts.iter().zip(self.shares(&Lanes::RGB, textures, at)) {
+                let albedo = part.albedo(textures, at);
+                sum = std::array::from_fn(|c| sum[c] + share * albedo[c]);
+            }
+            return sum;
+        }
         let is_color = |row: &&Row| row.spec.ty == ParamType::ColorTexture && !matches!(row.value, Value::Absent);
         let first = self.rows.iter().find(is_color);
         first.map_or([0.0; 3], |row| Lanes::RGB.to_film(row.at(&Lanes::RGB, textures, at)))
+    }
+}
+
+/// The parts of a material at a point.
+struct PartsHere<'a> {
+    material: &'a Material,
+    lanes: &'a Lanes,
+    textures: &'a Textures,
+    at: &'a TexturePoint,
+    interface: Interface,
+}
+
+impl Parts for PartsHere<'_> {
+    fn part(&self, number: usize) -> Bsdf {
+        let part = &self.material.parts[number];
+        // A sheet bounds nothing; its faces look as their bodies would in vacuum.
+        let interface = match (&self.material.medium, &part.medium) {
+            (None, Some(body)) => Interface::between(self.lanes, &Index::Even(1.0), &body.ior),
+            _ => self.interface,
+        };
+        part.bsdf(self.lanes, self.textures, self.at, interface)
+    }
+
+    fn opacity(&self, number: usize) -> f32 {
+        let part = &self.material.parts[number];
+        if part.is_opaque() { 1.0 } else { part.alpha(self.textures, self.at) }
     }
 }
 

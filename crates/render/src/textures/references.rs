@@ -58,6 +58,14 @@ impl TextureNames {
         }
     }
 
+    /// The vector parameter `name`: as written, else its default.
+    pub fn vector(&self, params: &Params, name: &str) -> ColorSource {
+        match self.written(params, name) {
+            Some(number) => ColorSource::Texture(number),
+            None => ColorSource::Constant(params.vector(name).map(|x| x as f32)),
+        }
+    }
+
     /// The number of the texture called `name`.
     pub fn find(&self, name: &str) -> Option<u32> {
         self.0.get(name).copied()

@@ -19,7 +19,7 @@ struct Scene {
     is_matte: bool,
 }
 
-const SCENES: [Scene; 9] = [
+const SCENES: [Scene; 10] = [
     Scene { name: "nothing before a white sky", body: "[background]\ncolor = 1\n", is_matte: false },
     Scene {
         name: "inside a lamp",
@@ -45,6 +45,11 @@ const SCENES: [Scene; 9] = [
     Scene {
         name: "perfect white under the sky",
         body: "[background]\ncolor = 1\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n[objects.ring]\ntype = \"torus\"\nmaterial = \"white\"\n",
+        is_matte: true,
+    },
+    Scene {
+        name: "a holed blend of white and silver under the sky",
+        body: "[background]\ncolor = 1\n[materials.white]\ntype = \"lambert\"\nreflectance = 1\n[materials.silver]\ntype = \"mirror\"\nreflectance = 1\n[materials.net]\ntype = \"mask\"\nmaterial = \"white\"\nopacity = 0.6\n[materials.mixed]\ntype = \"blend\"\nfirst = \"net\"\nsecond = \"silver\"\namount = 0.4\n[materials.sheet]\ntype = \"two_sided\"\nfront = \"mixed\"\n[objects.ring]\ntype = \"torus\"\nmaterial = \"sheet\"\n",
         is_matte: true,
     },
     Scene {

@@ -57,7 +57,9 @@ impl Dice {
             ParamType::Index => format!("{:e}", self.number(row.range)),
             ParamType::Choice(words) => format!("{:?}", self.pick(words)),
             ParamType::Vector2 => self.numbers(row, 2),
-            ParamType::Vector | ParamType::VectorTexture | ParamType::Color | ParamType::ColorTexture => self.numbers(row, 3),
+            ParamType::Vector | ParamType::VectorTexture | ParamType::Color | ParamType::ColorTexture => {
+                self.numbers(row, 3)
+            }
             ParamType::Gradient => {
                 format!(
                     "[[-1.0, {}], [0.3, {}], [1.0, {}]]",

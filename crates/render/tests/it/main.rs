@@ -8,6 +8,7 @@ mod cameras;
 mod caustics;
 mod closed_forms;
 mod color_modes;
+mod composed;
 mod contributions;
 mod effects;
 mod everything;
