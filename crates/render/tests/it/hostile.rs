@@ -10,6 +10,9 @@ use kirkas_render::{Film, Options, catalog, prepare};
 use kirkas_scene::files::{FileAccess, Limits, MemoryFiles};
 use kirkas_scene::{Kind, ParamSpec, ParamType, TypeSpec};
 
+/// What composed materials are made of.
+const PARTS: [&str; 3] = ["clear", "metal", "skin"];
+
 /// Numbers that a seed names, one after another.
 struct Dice(u64);
 
@@ -69,6 +72,8 @@ impl Dice {
                 )
             }
             ParamType::Path => "\"sky.hdr\"".into(),
+            ParamType::Reference(Kind::Material) => format!("{:?}", self.pick(&PARTS)),
+            ParamType::References(Kind::Material) => format!("[{:?}, {:?}]", self.pick(&PARTS), self.pick(&PARTS)),
             _ => return None,
         })
     }
@@ -133,7 +138,8 @@ impl Dice {
         for (i, material) in materials.into_iter().enumerate() {
             toml += &self.entity(&format!("materials.m{i}"), material, "");
         }
-        toml += "[materials.shine]\ntype = \"emitter\"\nintensity = 3\n";
+        toml += "[materials.clear]\ntype = \"rough_dielectric\"\n[materials.metal]\ntype = \"rough_conductor\"\nior = 0.2\nk = 3\n";
+        toml += "[materials.skin]\ntype = \"principled\"\n[materials.shine]\ntype = \"emitter\"\nintensity = 3\n";
         let material = self.pick(&["m0", "m1", "m2", "shine"]);
         toml += &format!("[objects.mesh]\ntype = \"mesh\"\nfile = \"m.obj\"\nmaterial = \"{material}\"\n");
         for (i, y) in [-1.0, 0.0, 0.7].into_iter().enumerate() {
