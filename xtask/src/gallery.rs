@@ -1,4 +1,5 @@
-//! The gallery: every scene of the folders `lecture`, `light` and `matter`, rendered small into `docs/gallery`.
+//! The gallery: every scene of the folders `lecture`, `light` and `matter`, rendered small into `docs/gallery`, and plots of
+//! materials.
 
 use crate::sh::{self, Outcome, build_kirkas, root};
 use std::fs;
@@ -27,6 +28,75 @@ const fn light(name: &'static str, options: &'static [&'static str]) -> Picture 
 const fn matter(name: &'static str, options: &'static [&'static str]) -> Picture {
     Picture { name, folder: "matter", scene: name, options }
 }
+
+const fn row_of_phong(name: &'static str, options: &'static [&'static str]) -> Picture {
+    Picture { name, folder: "matter", scene: "phong_table", options }
+}
+
+/// Plots: the file's name, and what `kirkas brdf` is asked for.
+const PLOTS: &[(&str, &[&str])] = &[
+    (
+        "brdf_slices.svg",
+        &["plot", "phong:diffuse=0.3,specular=0.5", "blinn_phong:diffuse=0.3,specular=0.5,exponent=128"],
+    ),
+    (
+        "brdf_lobes.svg",
+        &[
+            "plot",
+            "phong:exponent=80,specular=1",
+            "blinn_phong:exponent=320,specular=1",
+            "--label",
+            "Phong, exponent 80",
+            "--label",
+            "Blinn-Phong, exponent 320",
+            "--kind",
+            "lobes",
+        ],
+    ),
+    (
+        "brdf_factors.svg",
+        &[
+            "plot",
+            "rough_conductor:ior.material=gold,roughness=0.2",
+            "rough_conductor:ior.material=gold,roughness=0.2,distribution=beckmann",
+            "cook_torrance:roughness=0.2,ior=1.5",
+            "--label",
+            "gold, GGX",
+            "--label",
+            "gold, Beckmann",
+            "--label",
+            "Cook-Torrance, index 1.5",
+            "--kind",
+            "curves",
+            "--log",
+        ],
+    ),
+    (
+        "brdf_maps.png",
+        &[
+            "plot",
+            "scenes/matter/measured/blue-metallic-paint.bsdf",
+            "--label",
+            "blue metallic paint",
+            "--kind",
+            "incidence",
+            "--log",
+        ],
+    ),
+    (
+        "brdf_compare.png",
+        &[
+            "compare",
+            "scenes/matter/measured/specular-red-phenolic.bsdf",
+            "rough_plastic:reflectance=[0.39, 0.06, 0.03],roughness=0.03",
+            "--label",
+            "measured red phenolic",
+            "--label",
+            "rough_plastic, roughness 0.03",
+            "--quiet",
+        ],
+    ),
+];
 
 /// Every picture, in the order of the lecture.
 const PICTURES: &[Picture] = &[
@@ -84,7 +154,23 @@ const PICTURES: &[Picture] = &[
     light("cloud", &["--size", "480x320", "--spp", "16"]),
     light("rainbow", &["--size", "540x300", "--spp", "64"]),
     matter("models", &["--size", "540x315", "--spp", "64"]),
-    matter("designer", &["--size", "540x225", "--spp", "64"]),
+    row_of_phong("phong_table_60", &["--size", "540x135", "--spp", "16"]),
+    row_of_phong(
+        "phong_table_25",
+        &["--size", "540x135", "--spp", "16", "-D", "lights.lamp.direction=[-0.42, 0, -0.91]"],
+    ),
+    row_of_phong("phong_table_0", &["--size", "540x135", "--spp", "16", "-D", "lights.lamp.direction=[0, 0, -1]"]),
+    matter("diffuse", &["--size", "540x142", "--spp", "96"]),
+    matter("highlights", &["--size", "540x225", "--spp", "96"]),
+    matter("microfacets", &["--size", "540x225", "--spp", "96"]),
+    matter("anisotropy", &["--size", "540x225", "--spp", "96"]),
+    matter("lafortune", &["--size", "540x142", "--spp", "96"]),
+    matter("coats", &["--size", "540x225", "--spp", "96"]),
+    matter("metals", &["--size", "540x225", "--spp", "96"]),
+    matter("brushed_metal", &["--size", "540x270", "--spp", "80"]),
+    matter("velvet", &["--size", "540x142", "--spp", "96"]),
+    matter("car_paint", &["--size", "540x142", "--spp", "96"]),
+    matter("designer", &["--size", "540x195", "--spp", "128"]),
     matter("measured", &["--size", "480x280", "--spp", "96"]),
 ];
 
@@ -101,6 +187,12 @@ pub fn run(only: &[String]) -> Outcome {
             .arg("-o")
             .arg(folder.join(format!("{}.png", p.name)));
         c.args(p.options).arg("--quiet");
+        sh::run(&mut c)?;
+    }
+    let is_wanted = |file: &str| only.is_empty() || only.iter().any(|o| file.split('.').next() == Some(o));
+    for (file, args) in PLOTS.iter().filter(|p| is_wanted(p.0)) {
+        let mut c = Command::new(&kirkas);
+        c.current_dir(root()).arg("brdf").args(*args).arg("-o").arg(folder.join(file));
         sh::run(&mut c)?;
     }
     Ok(())

@@ -89,7 +89,7 @@ pub fn overlaid(materials: &[Matter], thetas: &[f64], (width, height): (f64, f64
     let chart = Chart {
         title: String::new(),
         x: angle_axis(is_whole),
-        y: Axis::of_values("f in 1/sr", values, Scale::Log, DECADES),
+        y: Axis::of_values("f in 1/sr", values, Scale::Log, DECADES + 2),
         marks: Vec::new(),
         curves: slices.into_iter().map(|s| Curve { points: s.points, color: s.color, dash: s.dash }).collect(),
         legend,
