@@ -5,7 +5,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
 use std::fmt;
 use std::io::{IsTerminal, Write};
 
-/// Columns where stderr is no terminal.
+/// Columns of running text, and of problems where stderr is no terminal.
 const WIDTH: usize = 100;
 /// Problems shown in full.
 const MOST: usize = 20;
@@ -20,6 +20,23 @@ pub fn print(sources: &Sources, diagnostics: &[Diagnostic]) {
 /// A line for the user, on stderr.
 pub fn note(text: impl fmt::Display) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// In lines of at most [`WIDTH`] columns; those after the first as far to the right as the text begins.
+pub fn wrapped(text: &str) -> String {
+    let indent = &text[..text.len() - text.trim_start().len()];
+    let (mut lines, mut line) = (Vec::new(), String::new());
+    for word in text.split_whitespace() {
+        if !line.is_empty() && indent.len() + line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(std::mem::take(&mut line));
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line += word;
+    }
+    lines.push(line);
+    lines.iter().map(|l| format!("{indent}{l}")).collect::<Vec<_>>().join("\n")
 }
 
 fn render(sources: &Sources, diagnostics: &[Diagnostic]) -> String {

@@ -6,7 +6,7 @@ use crate::film::spectral::LaneSums;
 use crate::film::{AovSample, FinishedSample, Tile, fixed};
 use crate::integrators::crossing;
 use crate::integrators::{Blocker, PathState, RayKind, ShadowRay, StepOutput};
-use crate::observe::{Observer, SampleId};
+use crate::observe::{Observer, SampleId, Step};
 use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{AlphaFilter, SurfaceHit};
@@ -58,6 +58,8 @@ pub(crate) struct Flock<'a, O: Observer> {
 
 impl<'a, O: Observer> Flock<'a, O> {
     pub(crate) fn new(renderer: &'a Renderer<'a>, size: usize, observer: &'a mut O) -> Self {
+        let mut out = StepOutput::default();
+        out.notes.are_wanted = observer.wants_steps();
         Flock {
             renderer,
             observer,
@@ -72,7 +74,7 @@ impl<'a, O: Observer> Flock<'a, O> {
             rays: Vec::new(),
             hits: Vec::new(),
             blocked: Vec::new(),
-            out: StepOutput::default(),
+            out,
             statistics: Statistics::default(),
         }
     }
@@ -228,6 +230,15 @@ impl<'a, O: Observer> Flock<'a, O> {
             slot.aov = Some(surface.map_or_else(AovSample::default, |s| self.renderer.aov(path, s)));
         }
         self.renderer.integrator.step(scene, path, &slot.sampler, surface, &mut self.out);
+        if self.out.notes.are_wanted {
+            let step = Step {
+                notes: &self.out.notes.list,
+                paths: &self.out.paths[self.waiting_slots.len()..],
+                shadow_rays: &self.out.shadow_rays[self.shadow_slots.len()..],
+            };
+            self.observer.step(slot.id, path, &step);
+            self.out.notes.list.clear();
+        }
         for (light, group) in self.out.contributions.drain(..) {
             add(self.renderer, slot, self.observer, path.branch, light, group);
         }
@@ -322,11 +333,13 @@ fn add(r: &Renderer, slot: &mut Slot, observer: &mut impl Observer, branch: u64,
     let rgb = rgb.map(|c| c * share);
     let parts = rgb.map(|c| fixed::from_f64(f64::from(c) * f64::from(slot.weight)));
     let (Some(red), Some(green), Some(blue)) = (parts[0], parts[1], parts[2]) else {
+        observer.invalid(slot.id, branch, group, light);
         slot.is_invalid = true;
         return;
     };
     let factor = f64::from(share) * f64::from(slot.weight);
     if slot.lanes.as_mut().is_some_and(|lanes| !lanes.add(light, factor)) {
+        observer.invalid(slot.id, branch, group, light);
         slot.is_invalid = true;
         return;
     }

@@ -168,7 +168,7 @@ impl Renderer<'_> {
     }
 
     /// The numbers of a sample.
-    pub(crate) fn sampler(&self, id: SampleId) -> Sampler {
+    pub fn sampler(&self, id: SampleId) -> Sampler {
         Sampler::new(self.sampler, self.seed, id.x, id.y, id.sample)
     }
 

@@ -6,6 +6,7 @@ pub mod check;
 pub mod completions;
 pub mod convert;
 pub mod diff;
+pub mod explain;
 pub mod merge;
 pub mod relight;
 pub mod render;

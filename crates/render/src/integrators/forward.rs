@@ -220,7 +220,7 @@ impl<'a> Tracer<'a> {
                     if path.depth >= self.most_bounces {
                         return None;
                     }
-                    let next = Particle::new(volume, &path, position).go_on(&path, sampler)?;
+                    let (next, _) = Particle::new(volume, &path, position).go_on(&path, sampler)?;
                     return flying.survive(next, flying.path.throughput.max_component());
                 }
             }

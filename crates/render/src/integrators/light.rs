@@ -147,9 +147,7 @@ impl Integrator for Shown {
         if let Some(volume) = scene.volume_of(&path.media) {
             let way = Way::of_ray(&path.ray, hit.map_or(f32::INFINITY, |h| h.t));
             let flight = particle::fly(volume, &path, &way, sampler);
-            if !flight.emitted.is_black() {
-                out.contributions.push((path.throughput * flight.emitted, volume.group));
-            }
+            path::see_medium(volume, &path, flight.emitted, out);
             let FlightEnd::Passed(weight) = flight.end else {
                 out.end = Some(PathEnd::Absorbed);
                 return;

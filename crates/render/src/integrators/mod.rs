@@ -10,6 +10,7 @@ pub mod path_simple;
 pub mod photon;
 pub mod whitted;
 
+use crate::observe::Notes;
 use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -206,6 +207,8 @@ pub struct StepOutput {
     pub end: Option<crate::observe::PathEnd>,
     /// Rays that steps traced by themselves, all together.
     pub counted: Statistics,
+    /// Why all this, for observers.
+    pub notes: Notes,
 }
 
 /// An integrator for one pass: one sample index of all pixels.

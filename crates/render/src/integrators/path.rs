@@ -25,8 +25,8 @@
 use super::particle::{self, Particle};
 use super::{Integrator, LastVertex, PathState, RayKind, ShadowRay, StepOutput, crossing};
 use crate::lights::pick::SELECTION;
-use crate::media::{FlightEnd, Way};
-use crate::observe::PathEnd;
+use crate::media::{FlightEnd, Volume, Way};
+use crate::observe::{Answer, Asked, Fate, Note, Notes, PathEnd, Saw, Sent, Shone};
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::hash::{combine, of_name};
@@ -98,7 +98,7 @@ impl Integrator for Path {
         let bsdf = crossing::bsdf(scene, path, hit);
         let Some(vertex) = Vertex::new(path, hit, &bsdf, out) else { return };
         if vertex.lobes.intersects(LobeSet::NON_DELTA) {
-            out.shadow_rays.extend(vertex.ask_light(scene, path, sampler, LobeSet::ALL));
+            out.shadow_rays.extend(vertex.ask_light(scene, path, sampler, LobeSet::ALL, &mut out.notes));
         }
         vertex.send_on(scene, path, sampler, LobeSet::ALL, self.roulette_depth, out);
     }
@@ -118,9 +118,7 @@ impl Path {
         if let Some(volume) = scene.volume_of(&path.media) {
             let way = Way::of_ray(&path.ray, hit.map_or(f32::INFINITY, |h| h.t));
             let flight = particle::fly(volume, &path, &way, sampler);
-            if !flight.emitted.is_black() {
-                out.contributions.push((path.throughput * flight.emitted, volume.group));
-            }
+            see_medium(volume, &path, flight.emitted, out);
             match flight.end {
                 FlightEnd::Passed(weight) => path.throughput *= weight,
                 FlightEnd::Scattered { distance, weight } => {
@@ -143,26 +141,44 @@ impl Path {
             out.end = Some(PathEnd::Depth);
             return;
         }
-        out.shadow_rays.extend(particle.ask_light(scene, path, sampler));
+        out.shadow_rays.extend(particle.ask_light(scene, path, sampler, &mut out.notes));
         match particle.go_on(path, sampler) {
-            Some(next) => play_roulette(scene, next, sampler, self.roulette_depth, out),
+            Some((next, sent)) => play_roulette(scene, next, sent, sampler, self.roulette_depth, out),
             None => out.end = Some(PathEnd::Absorbed),
         }
     }
 }
 
-/// Send the path on, or end it by chance.
+/// Send the path on, or end it by chance. `sent` says how it goes on.
 #[inline(always)]
-fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette_depth: u32, out: &mut StepOutput) {
+fn play_roulette(
+    scene: &Scene,
+    mut next: PathState,
+    sent: Sent,
+    sampler: &Sampler,
+    roulette_depth: u32,
+    out: &mut StepOutput,
+) {
+    let mut survival = 1.0;
     if next.depth >= roulette_depth {
-        let chance = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
-        if sampler.one(combine(next.branch, ROULETTE)) >= chance {
+        survival = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
+        if sampler.one(combine(next.branch, ROULETTE)) >= survival {
+            out.notes.add(|| Note::Sent(Sent { survival, fate: Fate::Roulette, ..sent }));
             out.end = Some(PathEnd::Roulette);
             return;
         }
-        next.throughput *= 1.0 / chance;
+        next.throughput *= 1.0 / survival;
     }
+    out.notes.add(|| Note::Sent(Sent { survival, ..sent }));
     out.paths.push(next);
+}
+
+/// The path sees the medium on its way shine, if it does.
+pub(super) fn see_medium(volume: &Volume, path: &PathState, emitted: Light, out: &mut StepOutput) {
+    if !emitted.is_black() {
+        out.notes.add(|| Note::Saw(Saw { what: Shone::Medium, radiance: emitted, weight: 1.0 }));
+        out.contributions.push((path.throughput * emitted, volume.group));
+    }
 }
 
 /// See the surface at the path's end shine; false where it is a covered boundary, which is passed, or the path ends.
@@ -191,6 +207,7 @@ pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
     };
     let sky = sky * scene.clearness(&path.lanes, &path.media, f64::INFINITY);
     if !sky.is_black() {
+        out.notes.add(|| Note::Saw(Saw { what: Shone::Background, radiance: sky, weight }));
         out.contributions.push((path.throughput * sky * weight, scene.background_group));
     }
     out.end = Some(PathEnd::Escaped);
@@ -208,6 +225,7 @@ fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut Ste
             }
             _ => 1.0,
         };
+        out.notes.add(|| Note::Saw(Saw { what: Shone::Surface, radiance: emitted, weight }));
         out.contributions.push((path.throughput * emitted * weight, hit.emission_group));
     }
 }
@@ -265,18 +283,30 @@ impl<'a> Vertex<'a> {
         path: &PathState,
         sampler: &Sampler,
         rivals: LobeSet,
+        notes: &mut Notes,
     ) -> Option<ShadowRay> {
         let hit = self.hit;
         let u = if scene.has_choice() { sampler.one(combine(path.branch, PICK)) } else { 0.0 };
-        let (number, probability) = scene.picker.pick(hit.position, self.normal, u)?;
+        let Some((number, probability)) = scene.picker.pick(hit.position, self.normal, u) else {
+            notes.add(|| Note::Asked(Asked::of(None, 0.0, Answer::NoLight)));
+            return None;
+        };
         let u = sampler.pair(combine(path.branch, LIGHT));
-        let s = scene.sample_picked(&path.lanes, number, hit.position, f64::from(path.ray.time), u)?;
+        let asked = |answer| Asked::of(Some(scene.pieces.light(number)), probability, answer);
+        let Some(s) = scene.sample_picked(&path.lanes, number, hit.position, f64::from(path.ray.time), u) else {
+            notes.add(|| Note::Asked(asked(Answer::Dark)));
+            return None;
+        };
         let wi = hit.frame.to_local(s.direction.as_vec3());
+        let asked = |answer| s.noted(hit.position, asked(answer));
         if !crossing::agrees(hit, s.direction, wi.z) {
+            notes.add(|| Note::Asked(asked(Answer::Behind)));
             return None;
         }
         let f = self.bsdf.eval(self.wo, wi, LobeSet::NON_DELTA, Mode::Radiance);
+        let asked = |answer| Asked { bsdf: f, cosine: wi.z.abs(), ..asked(answer) };
         if f.is_black() || s.light.is_black() {
+            notes.add(|| Note::Asked(asked(if f.is_black() { Answer::Black } else { Answer::Dark })));
             return None;
         }
         // Where no ray can hit the light, this is the only way to it.
@@ -286,7 +316,12 @@ impl<'a> Vertex<'a> {
         };
         let media = crossing::media_towards(scene, &path.media, hit, s.direction);
         let light = path.throughput * f * s.light * (wi.z.abs() * weight / probability);
-        crossing::ask(scene, path, sampler, hit.shadow_ray(&s, &path.ray), media, light, number)
+        let ray = crossing::ask(scene, path, sampler, hit.shadow_ray(&s, &path.ray), media, light, number);
+        notes.add(|| {
+            let answer = if ray.is_some() { Answer::Waits } else { Answer::Black };
+            Note::Asked(Asked { weight, ..asked(answer) })
+        });
+        ray
     }
 
     /// Send the path on by one of `lobes`, or end it by chance.
@@ -299,13 +334,13 @@ impl<'a> Vertex<'a> {
         roulette_depth: u32,
         out: &mut StepOutput,
     ) {
-        match self.go_on(scene, path, sampler, lobes) {
-            Some(next) => play_roulette(scene, next, sampler, roulette_depth, out),
+        match self.go_on(scene, path, sampler, lobes, &mut out.notes) {
+            Some((next, sent)) => play_roulette(scene, next, sent, sampler, roulette_depth, out),
             None => out.end = Some(PathEnd::Absorbed),
         }
     }
 
-    /// The path after this surface by one of `lobes`; `None` if the surface swallows it.
+    /// The path after this surface by one of `lobes`, and how it was chosen; `None`, which is noted, if the surface swallows it.
     #[inline(always)]
     pub(super) fn go_on(
         &self,
@@ -313,20 +348,27 @@ impl<'a> Vertex<'a> {
         path: &PathState,
         sampler: &Sampler,
         lobes: LobeSet,
-    ) -> Option<PathState> {
+        notes: &mut Notes,
+    ) -> Option<(PathState, Sent)> {
         let hit = self.hit;
         // One lobe leaves nothing to choose.
         let u_lobe = if (self.lobes & lobes).is_single() { 0.0 } else { sampler.one(combine(path.branch, LOBE)) };
         let u = sampler.pair(combine(path.branch, DIRECTION));
-        let s = self.bsdf.sample(self.wo, u_lobe, u, lobes, Mode::Radiance)?;
+        let Some(s) = self.bsdf.sample(self.wo, u_lobe, u, lobes, Mode::Radiance) else {
+            notes.add(|| Note::Sent(Sent::NOWHERE));
+            return None;
+        };
         let throughput: Light = path.throughput * s.weight();
         let direction = hit.frame.to_world(s.wi).as_dvec3().normalize();
         // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.
-        if throughput.is_black() || !crossing::keeps_side(hit, direction, s.lobe) {
+        let keeps_side = crossing::keeps_side(hit, direction, s.lobe);
+        if throughput.is_black() || !keeps_side {
+            let fate = if keeps_side { Fate::Swallowed } else { Fate::WrongSide };
+            notes.add(|| Note::Sent(Sent { fate, ..Sent::of(&s) }));
             return None;
         }
         let last = LastVertex { position: hit.position, normal: self.normal, pdf: s.pdf };
-        Some(PathState {
+        let next = PathState {
             lanes: s.lanes(path.lanes),
             ray: hit.ray_towards(direction, &path.ray),
             throughput,
@@ -337,7 +379,8 @@ impl<'a> Vertex<'a> {
             passed: 0,
             travelled: 0.0,
             last: (!s.lobe.is_delta()).then_some(last),
-        })
+        };
+        Some((next, Sent::of(&s)))
     }
 }
 

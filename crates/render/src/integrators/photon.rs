@@ -32,6 +32,7 @@ use super::forward::{Arrival, Place, Receiver, Tracer, usual_count};
 use super::path::{self, MAX_DEPTH, ROULETTE_DEPTH, Vertex};
 use super::{Integrator, Pass, PathState, Shared, StepOutput, crossing};
 use crate::camera::CameraSample;
+use crate::observe::{Note, Saw, Shone};
 use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -178,14 +179,15 @@ impl Integrator for Gatherer {
         let roulette_depth = self.settings.roulette_depth;
         if !vertex.lobes.intersects(LobeSet::DIFFUSE) {
             if vertex.lobes.intersects(LobeSet::NON_DELTA) {
-                out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::ALL));
+                out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::ALL, &mut out.notes));
             }
             vertex.send_on(scene, &path, sampler, LobeSet::ALL, roulette_depth, out);
         } else {
             // ... up to the first matte surface: there direct light is asked for and looked for, the rest is gathered.
             self.gather(&path, &vertex, out);
-            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::NON_DELTA));
-            if let Some(probe) = vertex.go_on(scene, &path, sampler, LobeSet::NON_DELTA) {
+            out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::NON_DELTA, &mut out.notes));
+            if let Some((probe, sent)) = vertex.go_on(scene, &path, sampler, LobeSet::NON_DELTA, &mut out.notes) {
+                out.notes.add(|| Note::Sent(sent));
                 let branch = combine(path.branch, PROBE);
                 out.paths.push(PathState { depth: self.settings.max_depth.max(probe.depth), branch, ..probe });
             }
@@ -223,7 +225,10 @@ impl Gatherer {
                 None => found.push((photon.group, light)),
             }
         });
-        out.contributions.extend(found.into_iter().map(|(group, light)| (path.throughput * light, group)));
+        for (group, light) in found {
+            out.notes.add(|| Note::Saw(Saw { what: Shone::Photons, radiance: light, weight: 1.0 }));
+            out.contributions.push((path.throughput * light, group));
+        }
     }
 }
 

@@ -25,7 +25,7 @@
 
 use super::{Blocker, Integrator, PathState, RayKind, ShadowRay, StepOutput, crossing};
 use crate::lights::Lamp;
-use crate::observe::PathEnd;
+use crate::observe::{Answer, Asked, Fate, Note, PathEnd, Saw, Sent, Shone};
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use kirkas_geometry::hash::{combine, of_name};
@@ -120,6 +120,7 @@ impl Integrator for Whitted {
         // What left the scene sees the background.
         let Some(hit) = hit else {
             let sky = scene.background.radiance(&path.lanes, path.ray.direction);
+            out.notes.add(|| Note::Saw(Saw { what: Shone::Background, radiance: sky, weight: 1.0 }));
             out.contributions.push((path.throughput * sky, scene.background_group));
             out.end = Some(PathEnd::Escaped);
             return;
@@ -137,6 +138,7 @@ impl Integrator for Whitted {
         // A surface that shines is seen.
         let emitted = scene.emitted(&path.lanes, hit);
         if !emitted.is_black() {
+            out.notes.add(|| Note::Saw(Saw { what: Shone::Surface, radiance: emitted, weight: 1.0 }));
             out.contributions.push((path.throughput * emitted, hit.emission_group));
         }
 
@@ -169,6 +171,8 @@ impl Whitted {
             return;
         }
         for (light, group) in &scene.ambient {
+            let radiance = albedo * light.at(&path.lanes) * self.ambient;
+            out.notes.add(|| Note::Saw(Saw { what: Shone::Ambient, radiance, weight: 1.0 }));
             out.contributions.push((path.throughput * albedo * light.at(&path.lanes) * self.ambient, *group));
         }
     }
@@ -203,11 +207,22 @@ impl Whitted {
             for i in 0..count {
                 let u = sampler.pair_of(purpose, i, count);
                 let time = f64::from(path.ray.time);
-                let Some(s) = scene.sample_light(&path.lanes, light, hit.position, time, u) else { continue };
+                let asked = |answer| Asked::of(Some(number as u32), count as f32, answer);
+                let Some(s) = scene.sample_light(&path.lanes, light, hit.position, time, u) else {
+                    out.notes.add(|| Note::Asked(asked(Answer::Dark)));
+                    continue;
+                };
                 let wi = hit.frame.to_local(s.direction.as_vec3());
                 let f = bsdf.eval(wo, wi, lobes, Mode::Radiance);
                 let weight = path.throughput * f * s.light * (wi.z.abs() / count as f32);
+                let asked = |answer| Asked { bsdf: f, cosine: wi.z.abs(), ..s.noted(hit.position, asked(answer)) };
                 if weight.is_black() || !crossing::agrees(hit, s.direction, wi.z) {
+                    out.notes.add(|| {
+                        let is_dark = s.light.is_black() || path.throughput.is_black();
+                        let agrees = crossing::agrees(hit, s.direction, wi.z);
+                        let black = if is_dark { Answer::Dark } else { Answer::Black };
+                        Note::Asked(asked(if agrees { black } else { Answer::Behind }))
+                    });
                     continue;
                 }
                 let media = crossing::media_towards(scene, &path.media, hit, s.direction);
@@ -224,9 +239,12 @@ impl Whitted {
                     _ => weight,
                 };
                 if self.shadows == Shadows::None {
+                    let radiance = f * s.light * wi.z.abs();
+                    out.notes.add(|| Note::Saw(Saw { what: Shone::Light, radiance, weight: 1.0 / count as f32 }));
                     out.contributions.push((weight, light.group));
                     continue;
                 }
+                out.notes.add(|| Note::Asked(asked(Answer::Waits)));
                 out.shadow_rays.push(ShadowRay {
                     ray: hit.shadow_ray(&s, &path.ray),
                     lanes: path.lanes,
@@ -292,13 +310,17 @@ impl Whitted {
         let (wi, lobe) = (sample.wi, sample.lobe);
         let throughput = path.throughput * weight;
         if throughput.max_component() < self.min_contribution || throughput.is_black() {
+            let fate = if throughput.is_black() { Fate::Swallowed } else { Fate::TooWeak };
+            out.notes.add(|| Note::Sent(Sent { fate, ..Sent::of(sample) }));
             return;
         }
         let direction: DVec3 = hit.frame.to_world(wi).as_dvec3().normalize();
         // A shading normal may bend a ray to the wrong side of the true surface: such a ray is dropped.
         if !crossing::keeps_side(hit, direction, lobe) {
+            out.notes.add(|| Note::Sent(Sent { fate: Fate::WrongSide, ..Sent::of(sample) }));
             return;
         }
+        out.notes.add(|| Note::Sent(Sent::of(sample)));
         out.paths.push(PathState {
             ray: hit.ray_towards(direction, &path.ray),
             lanes: sample.lanes(path.lanes),

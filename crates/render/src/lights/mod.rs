@@ -29,6 +29,7 @@ pub use cone::Cone;
 
 use crate::background::Background;
 use crate::materials::Material;
+use crate::observe::Asked;
 use crate::textures::Textures;
 use kirkas_geometry::DVec3;
 use kirkas_geometry::hash::of_name;
@@ -69,6 +70,12 @@ pub struct LightSample {
 }
 
 impl LightSample {
+    /// `asked`, with what the sample says.
+    pub fn noted(&self, from: DVec3, asked: Asked) -> Asked {
+        let (direction, distance) = (self.direction, self.distance(from));
+        Asked { direction, distance, light: self.light, pdf: self.pdf, ..asked }
+    }
+
     /// How far away the light is; infinite without a target.
     pub fn distance(&self, from: DVec3) -> f64 {
         self.target.as_ref().map_or(f64::INFINITY, |t| (t.position - from).length())
