@@ -22,6 +22,8 @@ pub fn findings(e: &Explanation) -> Vec<Finding> {
 
 /// Samples at least, lest chance be taken for a rule.
 const FEW: usize = 8;
+/// Of so many samples one that alone finds light is no longer mere bad luck.
+const MANY: usize = 32;
 
 fn not_finite(e: &Explanation) -> Option<Finding> {
     let bad = |s: &Sample| s.contributions().find(|(_, c)| c.is_invalid).map(|(i, _)| i);
@@ -41,9 +43,7 @@ fn not_finite(e: &Explanation) -> Option<Finding> {
         code: "not-finite",
         text: format!(
             "{} not finite, or absurdly bright, and left out; in sample {} it begins at {culprit}",
-            plural(e.invalid_samples as usize, "sample")
-                .replace("sample", "sample is")
-                .replace("sample iss", "samples are"),
+            if e.invalid_samples == 1 { "1 sample is".into() } else { format!("{} samples are", e.invalid_samples) },
             sample.sample
         ),
         cure: "look at that material's values and textures for NaN, infinity, or numbers that are far too large".into(),
@@ -63,15 +63,24 @@ fn firefly(e: &Explanation) -> Option<Finding> {
     if e.trees.len() < FEW || whole <= 0.0 || light(brightest) < MOST * whole {
         return None;
     }
-    // Of few samples that find a small lamp, one may well carry half: only what towers above all the others is a firefly.
+    // Of few samples that find a small lamp, one may well carry half: only what towers above others that found light as well is one.
     let mut others: Vec<f64> = e.trees.iter().filter(|s| s.sample != brightest.sample).map(light).collect();
     others.sort_by(f64::total_cmp);
-    if light(brightest) < 10.0 * others[others.len() - 1].max(whole / e.trees.len() as f64 * 0.5) {
+    let lit = others.iter().filter(|l| **l > 0.0).count();
+    let is_alone = lit * 4 < others.len() && e.trees.len() < MANY;
+    if is_alone || light(brightest) < 10.0 * others[others.len() - 1] {
         return None;
     }
     let (i, _) = brightest
         .contributions()
         .max_by(|a, b| a.1.color().iter().sum::<f64>().total_cmp(&b.1.color().iter().sum()))?;
+    // A light that is asked for answers moderately, unless what asks concentrates its light.
+    let found_itself = !brightest.rays[i].saw.is_empty();
+    let concentrates = |a: &crate::record::Asked| a.bsdf.iter().any(|f| f * a.cosine > 3.0);
+    let is_strong = brightest.rays[i].throughput.iter().any(|t| *t > 3.0);
+    if !found_itself && !is_strong && !brightest.rays[i].asked.iter().any(concentrates) {
+        return None;
+    }
     // The least likely step on its way.
     let mut rarest: Option<(f32, &Node)> = None;
     let mut at = Some(i);

@@ -9,16 +9,20 @@
 //!                                   -> stories  what share of the light came which way
 //!                                   -> findings what may be wrong
 //!                                   -> tree     for the terminal
+//!                                   -> page     for the browser: one file of HTML
 //! ```
 
 mod fields;
 mod finding;
+mod page;
 mod record;
 mod recorder;
 mod story;
 mod tree;
+mod wireframe;
 
 pub use finding::{Finding, findings};
+pub use page::page;
 pub use record::{
     Answered, Asked, Blocker, Contribution, Explanation, Hit, Node, Sample, Saw, Sending, VERSION, schema,
 };

@@ -2,7 +2,7 @@
 
 use crate::integrators::{PathState, ShadowRay};
 use crate::scene::SurfaceHit;
-use kirkas_geometry::DVec3;
+use kirkas_geometry::{DVec3, Vec3};
 use kirkas_optics::{BsdfSample, Light, Lobe};
 
 /// Which sample of which pixel.
@@ -117,6 +117,17 @@ pub enum Answer {
     Behind,
     /// The surface sends nothing from there to the viewer, or what fills the way lets nothing through.
     Black,
+}
+
+impl Answer {
+    /// Where the surface has the value `f` for light from `wi` to `wo`, and nothing comes of it.
+    pub(crate) fn of_black(f: Light, wo: Vec3, wi: Vec3) -> Self {
+        match f.is_black() {
+            true if wo.z * wi.z <= 0.0 => Answer::Behind,
+            true => Answer::Black,
+            false => Answer::Dark,
+        }
+    }
 }
 
 /// A ray that a step sends, or would have.

@@ -306,7 +306,7 @@ impl<'a> Vertex<'a> {
         let f = self.bsdf.eval(self.wo, wi, LobeSet::NON_DELTA, Mode::Radiance);
         let asked = |answer| Asked { bsdf: f, cosine: wi.z.abs(), ..asked(answer) };
         if f.is_black() || s.light.is_black() {
-            notes.add(|| Note::Asked(asked(if f.is_black() { Answer::Black } else { Answer::Dark })));
+            notes.add(|| Note::Asked(asked(Answer::of_black(f, self.wo, wi))));
             return None;
         }
         // Where no ray can hit the light, this is the only way to it.

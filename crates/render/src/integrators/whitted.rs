@@ -218,10 +218,8 @@ impl Whitted {
                 let asked = |answer| Asked { bsdf: f, cosine: wi.z.abs(), ..s.noted(hit.position, asked(answer)) };
                 if weight.is_black() || !crossing::agrees(hit, s.direction, wi.z) {
                     out.notes.add(|| {
-                        let is_dark = s.light.is_black() || path.throughput.is_black();
                         let agrees = crossing::agrees(hit, s.direction, wi.z);
-                        let black = if is_dark { Answer::Dark } else { Answer::Black };
-                        Note::Asked(asked(if agrees { black } else { Answer::Behind }))
+                        Note::Asked(asked(if agrees { Answer::of_black(f, wo, wi) } else { Answer::Behind }))
                     });
                     continue;
                 }

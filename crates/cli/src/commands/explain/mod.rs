@@ -1,5 +1,6 @@
 //! `kirkas explain`: why a pixel has its colour.
 
+mod picture;
 mod source;
 mod worst;
 
@@ -8,7 +9,7 @@ use crate::problem::{Outcome, Problem};
 use crate::progress::Progress;
 use crate::ranges::parse_range;
 use crate::report;
-use kirkas_explain::{Explanation, Style, explain, findings, summary, tree};
+use kirkas_explain::{Explanation, Style, explain, findings, page, summary, tree};
 use kirkas_scene::Diagnostic;
 use source::{Source, Verdict};
 use std::io::IsTerminal;
@@ -19,6 +20,7 @@ const EXAMPLES: &str = "Examples:
   kirkas explain flake.png --pixel 320,240
   kirkas explain out.exr --pixel 320,240 --sample 17
   kirkas explain scene.toml --pixel 320,240 --spp 64 -D integrator.type=path
+  kirkas explain out.exr --pixel 320,240 -o pixel.html
   kirkas explain out.exr --pixel 320,240 -o pixel.json
   kirkas explain out.exr --worst 5
 
@@ -47,8 +49,8 @@ pub struct Explain {
     /// Explain the N pixels that most need it: not finite, fireflies, noise
     #[arg(long, value_name = "N", conflicts_with_all = ["pixel", "sample", "samples", "output"], value_parser = clap::value_parser!(u16).range(1..))]
     worst: Option<u16>,
-    /// Everything that was recorded, as JSON; `-` is stdout
-    #[arg(short, long, value_name = "FILE.json")]
+    /// Everything that was recorded: .html is one page with the ray tree in 3D, .json all numbers, `-` the JSON on stdout
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Branches of the tree that bring less than this share of the pixel are folded
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share)]
@@ -71,8 +73,8 @@ pub struct Explain {
 pub fn run(args: &Explain) -> Result<Outcome, Problem> {
     // What can be refused before any work.
     let file = args.output.as_deref().filter(|p| p.as_os_str() != "-");
+    let format = args.output.as_deref().map(Format::of).transpose()?;
     if let Some(path) = file {
-        check_format(path)?;
         check_writable(path)?;
         check_no_loss([path], &[true_place(&args.source)])?;
     }
@@ -84,18 +86,24 @@ pub fn run(args: &Explain) -> Result<Outcome, Problem> {
     let Some(pixel) = args.pixel else { return Ok(Outcome::Done) };
     let samples = source.samples(args, pixel)?;
     let explanation = replay(args, &source, pixel, samples)?;
-    if let Some(path) = &args.output {
-        if let Some(path) = file {
-            check_no_loss([path], &source.inputs())?;
+    if let Some(path) = file {
+        check_no_loss([path], &source.inputs())?;
+    }
+    let text = match format {
+        Some(Format::Page) => {
+            let picture = picture::picture(&source);
+            page(&explanation, &source.prepared.scene, picture.as_ref().map(|(png, w, h)| (&png[..], *w, *h)))
         }
-        let json = format!("{:#}\n", explanation.to_json());
-        match file {
-            Some(path) => write_atomically(path, json.as_bytes())?,
-            None => print_out(json.as_bytes())?,
-        }
-        if path.as_os_str() == "-" {
+        Some(Format::Json) => format!("{:#}\n", explanation.to_json()),
+        None => String::new(),
+    };
+    match (file, format) {
+        (Some(path), _) => write_atomically(path, text.as_bytes())?,
+        (None, Some(_)) => {
+            print_out(text.as_bytes())?;
             return Ok(Outcome::Done);
         }
+        (None, None) => {}
     }
     print_out(told(args, &source, &explanation).as_bytes())?;
     Ok(Outcome::Done)
@@ -136,13 +144,25 @@ fn told(args: &Explain, source: &Source, e: &Explanation) -> String {
     text
 }
 
-fn check_format(path: &Path) -> Result<(), Problem> {
-    match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-        Some("json") => Ok(()),
-        _ => Err(Problem::input(
-            Diagnostic::error("unknown-format", format!("`{}` has no extension of an explanation", path.display()))
-                .help("give it the extension `.json`"),
-        )),
+/// What is written besides the terminal.
+#[derive(Clone, Copy)]
+enum Format {
+    Json,
+    Page,
+}
+
+impl Format {
+    /// By the file's extension; `-` is JSON.
+    fn of(path: &Path) -> Result<Self, Problem> {
+        match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+            Some("json") => Ok(Format::Json),
+            Some("html" | "htm") => Ok(Format::Page),
+            _ if path.as_os_str() == "-" => Ok(Format::Json),
+            _ => Err(Problem::input(
+                Diagnostic::error("unknown-format", format!("`{}` has no extension of an explanation", path.display()))
+                    .help("give it the extension `.html` or `.json`"),
+            )),
+        }
     }
 }
 

@@ -1,0 +1,5 @@
+//! What is said of a pixel is exactly what made it, and what is found is right.
+
+mod exact;
+mod layout;
+mod support;
