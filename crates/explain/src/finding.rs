@@ -28,16 +28,20 @@ const MANY: usize = 32;
 fn not_finite(e: &Explanation) -> Option<Finding> {
     let bad = |s: &Sample| s.contributions().find(|(_, c)| c.is_invalid).map(|(i, _)| i);
     let (sample, i) = e.trees.iter().find_map(|s| Some((s, bad(s)?)))?;
-    // The first surface on the way whose numbers are no longer numbers.
+    // The first surface on the way whose numbers are no longer numbers; or what shines at its end.
     let mut way = vec![i];
     while let Some(parent) = sample.rays[way[way.len() - 1]].parent {
         way.push(parent);
     }
-    let is_bad = |n: &Node| !n.throughput.iter().all(|v| v.is_finite());
-    let first = way.iter().rev().copied().find(|&i| is_bad(&sample.rays[i]));
-    let culprit = match first.and_then(|i| sample.rays[i].parent) {
-        Some(parent) => place(&sample.rays[parent]),
-        None => place(&sample.rays[i]),
+    let is_bad = |v: &[f32; 4]| !v.iter().all(|v| v.is_finite());
+    let node = &sample.rays[i];
+    let first = way.iter().rev().copied().find(|&i| is_bad(&sample.rays[i].throughput));
+    let asked = node.asked.iter().find(|a| a.answer.contribution.as_ref().is_some_and(|c| c.is_invalid));
+    let culprit = match (first.and_then(|i| sample.rays[i].parent), asked) {
+        (Some(parent), _) => place(&sample.rays[parent]),
+        (None, Some(a)) if is_bad(&a.bsdf) => place(node),
+        (None, Some(a)) => format!("the light `{}`", a.light.as_deref().unwrap_or("?")),
+        (None, None) => place(node),
     };
     Some(Finding {
         code: "not-finite",
@@ -143,18 +147,32 @@ fn black(e: &Explanation) -> Option<Finding> {
         );
     }
     if asked.is_empty() {
+        if let Some(body) = firsts.iter().find_map(|n| n.inside.last()) {
+            return finding(
+                format!("the camera is inside the body of `{body}`, which lets nothing through"),
+                "move the camera out of it, or make its absorption less",
+            );
+        }
         if is_from_behind && ended("absorbed") * 2 > firsts.len() {
             return finding(
                 format!("the camera sees the back of `{seen}`, and backs are black here: its normals may point inward"),
                 "turn its faces round, or set `shade_back = true`",
             );
         }
-        let inside = firsts.iter().find_map(|n| n.inside.last().cloned());
-        if let Some(body) = inside {
+        let last = |s: &Sample| s.rays.iter().rev().find(|n| n.ended.is_some()).cloned();
+        let lasts: Vec<Node> = e.trees.iter().filter_map(last).collect();
+        if lasts.iter().filter(|n| n.ended == Some("depth")).count() * 2 > lasts.len() {
+            let object = most(lasts.iter().filter_map(|n| Some(n.hit.as_ref()?.object.clone())))?;
             return finding(
-                format!("the camera is inside the body of `{body}`, which lets nothing through"),
-                "move the camera out of it, or make its absorption less",
+                format!(
+                    "the path ends at `{object}`, seen by way of `{seen}`, since the greatest depth is reached there"
+                ),
+                "raise `integrator.max_depth`",
             );
+        }
+        if lasts.iter().filter(|n| n.hit.is_none()).count() * 2 > lasts.len() {
+            let text = format!("the rays that `{seen}` sends on leave the scene, and the background is black");
+            return finding(text, "give the scene a `[background]`, or something for it to show");
         }
         return finding(
             format!("`{seen}` (material `{material}`) swallows all light"),
@@ -172,6 +190,9 @@ fn black(e: &Explanation) -> Option<Finding> {
     .into_iter()
     .max_by_key(|c| c.1)?
     .0;
+    if counts("no_light") * 2 > asked.len() {
+        return finding(format!("no light shines on `{seen}`"), "give the scene a light, an `emitter` or a background");
+    }
     let light = most(of(most_of).filter_map(|a| a.light.clone())).unwrap_or_else(|| "the light".into());
     match most_of {
         "blocked" => {
@@ -262,11 +283,23 @@ fn depth_limit(e: &Explanation) -> Option<Finding> {
     let tail = if c2 + c3 > 0.0 { 0.5 * (c1 + c2) * ratio / (1.0 - ratio) } else { 0.0 };
     let is_cut_often = cut.len() * 4 >= e.trees.len().max(1);
     let is_much = in_vain * 4 >= e.trees.len().max(1) || is_cut_often && tail > 0.1 * total(e);
-    let place = |s: &&Sample| {
-        let n = s.rays.iter().find(|n| n.ended == Some("depth"))?;
-        Some((n.hit.as_ref()?.object.clone(), n.depth))
+    // Mirrors and clear surfaces pass on what they see: what they would have shown is gone.
+    let is_sharp = |n: &&Node| {
+        let lobe = n.sent.as_ref().and_then(|s| s.lobe);
+        n.ended == Some("depth")
+            && matches!(lobe, Some("mirror" | "refraction"))
+            && n.throughput.iter().any(|t| *t > 0.25)
     };
-    let (object, depth) = most(cut.iter().filter_map(place)).filter(|_| is_much)?;
+    let unseen = e.trees.iter().filter(|s| s.rays.iter().any(|n| is_sharp(&n))).count();
+    let is_much = is_much || unseen * 4 >= e.trees.len().max(1);
+    // Where most is lost.
+    let mut lost: BTreeMap<(&str, u32), f32> = BTreeMap::new();
+    for n in e.trees.iter().flat_map(|s| &s.rays).filter(|n| n.ended == Some("depth")) {
+        if let Some(hit) = &n.hit {
+            *lost.entry((&hit.object, n.depth)).or_default() += n.throughput.iter().fold(0.0_f32, |m, t| m.max(*t));
+        }
+    }
+    let ((object, depth), _) = lost.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| is_much)?;
     Some(Finding {
         code: "depth-limit",
         text: format!(
