@@ -41,6 +41,8 @@ pub fn docs(_: &[String]) -> Outcome {
     let binary = build_kirkas()?;
     let schema = output(Command::new(&binary).arg("schema"))?;
     fs::write(root().join("docs/kirkas.schema.json"), schema).map_err(|e| e.to_string())?;
+    let explanation = output(Command::new(&binary).args(["schema", "--explanation"]))?;
+    fs::write(root().join("docs/explanation.schema.json"), explanation).map_err(|e| e.to_string())?;
     let manual = output(Command::new(&binary).args(["schema", "--manual"]))?;
     fs::write(root().join("docs/manual.md"), manual).map_err(|e| e.to_string())
 }

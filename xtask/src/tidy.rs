@@ -14,7 +14,8 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("formats", &["geometry", "scene"]),
     ("render", &["geometry", "scene", "accel", "optics", "images"]),
     ("plot", &["geometry"]),
-    ("cli", &["geometry", "scene", "accel", "optics", "images", "formats", "render", "plot"]),
+    ("explain", &["geometry", "accel", "optics", "render"]),
+    ("cli", &["geometry", "scene", "accel", "optics", "images", "formats", "render", "plot", "explain"]),
     ("probe", &["scene", "formats", "render"]),
     ("testkit", &["geometry"]),
 ];

@@ -1,6 +1,7 @@
 //! The scene's geometry as lines, few enough to be drawn at once: for the eye, so that rays have something to hit.
 
 use kirkas_accel::{Geometry, Instance, SceneGeometry, Shape};
+use kirkas_geometry::elementary::sin_cos;
 use kirkas_geometry::{Bounds3, DAffine3, DVec3, Vec3};
 
 /// A line from one point to another, in the world.
@@ -119,8 +120,8 @@ fn across(axis: Vec3) -> (DVec3, DVec3) {
 fn circle(center: Vec3, normal: Vec3, radius: f32, line: &mut impl FnMut(DVec3, DVec3)) {
     let (u, v) = across(normal);
     let at = |k: usize| {
-        let angle = k as f64 / STEPS as f64 * std::f64::consts::TAU;
-        center.as_dvec3() + (u * angle.cos() + v * angle.sin()) * f64::from(radius)
+        let (sin, cos) = sin_cos(k as f64 / STEPS as f64 * std::f64::consts::TAU);
+        center.as_dvec3() + (u * cos + v * sin) * f64::from(radius)
     };
     (0..STEPS).for_each(|k| line(at(k), at(k + 1)));
 }

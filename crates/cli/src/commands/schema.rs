@@ -19,13 +19,20 @@ pub struct Schema {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// The manual of all types and parameters instead, as Markdown
-    #[arg(long)]
+    #[arg(long, conflicts_with = "explanation")]
     manual: bool,
+    /// The JSON Schema of what `kirkas explain -o FILE.json` writes instead
+    #[arg(long)]
+    explanation: bool,
 }
 
 /// Do it.
 pub fn run(args: &Schema) -> Result<Outcome, Problem> {
-    let mut text = if args.manual { markdown(&catalog()) } else { json_schema(&catalog()) };
+    let mut text = match (args.manual, args.explanation) {
+        (true, _) => markdown(&catalog()),
+        (_, true) => format!("{:#}", kirkas_explain::schema()),
+        _ => json_schema(&catalog()),
+    };
     if !text.ends_with('\n') {
         text.push('\n');
     }

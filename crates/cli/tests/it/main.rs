@@ -10,6 +10,7 @@ mod brdf;
 mod commands;
 mod denoise;
 mod errors;
+mod explain;
 mod faults;
 mod films;
 mod interruptions;

@@ -22,6 +22,11 @@ fn the_manual_is_that_of_this_build() {
 }
 
 #[test]
+fn the_schema_of_explanations_is_that_of_this_build() {
+    check("explanation.schema.json", &["schema", "--explanation"]);
+}
+
+#[test]
 fn the_schema_is_that_of_this_build() {
     check("kirkas.schema.json", &["schema"]);
 }
