@@ -4,6 +4,7 @@ use crate::error::{ImageError, Result, damaged};
 use crate::image::{Attribute, RgbImage};
 use crate::limits::check_size;
 use crate::srgb::{srgb8_to_linear, srgb16_to_linear};
+use crate::tiff_file::read_tiff;
 use crate::{Texts, read_exr, read_hdr, read_png};
 use image::codecs::{bmp::BmpDecoder, jpeg::JpegDecoder, tga::TgaDecoder};
 use image::{DynamicImage, ImageDecoder};
@@ -20,6 +21,8 @@ pub struct DecodedImage {
     pub pixels: Pixels,
     /// The texts of the file's header or chunks.
     pub texts: Texts,
+    /// The file says that its codes are linear.
+    pub says_linear: bool,
 }
 
 /// Red, green, blue and alpha as the file has them: EXR colours come multiplied by alpha, the others do not.
@@ -33,7 +36,7 @@ pub enum Pixels {
     Linear(Vec<[f32; 4]>),
 }
 
-/// Read a PNG, JPEG, BMP, TGA, HDR or EXR picture, whatever its name says.
+/// Read a PNG, JPEG, BMP, TGA, TIFF, HDR or EXR picture, whatever its name says.
 ///
 /// TGA files need not say what they are: such bytes are tried only if `hint`, the ending of the file's name,
 /// is `tga`, or if they end like a TGA file. Of an EXR file the colours of its data window are taken, as
@@ -49,6 +52,8 @@ pub fn decode(bytes: &[u8], hint: Option<&str>) -> Result<DecodedImage> {
     } else if starts(&[0xff, 0xd8, 0xff]) {
         let decoder = JpegDecoder::new(Cursor::new(bytes)).map_err(|error| damaged("JPEG", error))?;
         from_codec("JPEG", decoder, bytes.len())
+    } else if starts(b"II*\0") || starts(b"MM\0*") {
+        read_tiff(bytes)
     } else if starts(b"BM") {
         let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(|error| damaged("BMP", error))?;
         from_codec("BMP", decoder, bytes.len())
@@ -61,8 +66,16 @@ pub fn decode(bytes: &[u8], hint: Option<&str>) -> Result<DecodedImage> {
 }
 
 impl DecodedImage {
+    /// True where its numbers are proportional to light: floats, and codes of a file that says so.
+    pub fn is_linear(&self) -> bool {
+        self.says_linear || matches!(self.pixels, Pixels::Linear(_))
+    }
+
     /// Linear RGBA: sRGB codes decoded exactly, alpha as it is.
     pub fn linear(&self) -> Vec<[f32; 4]> {
+        if self.is_linear() {
+            return self.raw();
+        }
         match &self.pixels {
             Pixels::Srgb8(codes) => codes
                 .iter()
@@ -135,5 +148,5 @@ pub(crate) fn from_codec(
         }
         coded => Pixels::Srgb8(coded.into_rgba8().pixels().map(|pixel| pixel.0).collect()),
     };
-    Ok(DecodedImage { width, height, pixels, texts: Texts::new() })
+    Ok(DecodedImage { width, height, pixels, texts: Texts::new(), says_linear: false })
 }

@@ -9,7 +9,7 @@ pub type Result<T> = std::result::Result<T, ImageError>;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ImageError {
     /// The bytes begin like no format that can be read here.
-    #[error("not a picture of a known format; give a PNG, JPEG, BMP, TGA, HDR or EXR file")]
+    #[error("not a picture of a known format; give a PNG, JPEG, BMP, TGA, TIFF, HDR or EXR file")]
     UnknownFormat,
     /// The bytes contradict themselves or end too early.
     #[error("this {format} file is damaged ({reason}); write it again or fetch a fresh copy")]

@@ -120,6 +120,12 @@ fn texts_of(bytes: &[u8]) -> Texts {
 impl From<RgbImage> for DecodedImage {
     fn from(image: RgbImage) -> Self {
         let pixels = image.pixels.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect();
-        Self { width: image.width, height: image.height, pixels: Pixels::Linear(pixels), texts: Texts::new() }
+        Self {
+            width: image.width,
+            height: image.height,
+            pixels: Pixels::Linear(pixels),
+            texts: Texts::new(),
+            says_linear: false,
+        }
     }
 }

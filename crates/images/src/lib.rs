@@ -21,6 +21,7 @@ mod exr_read;
 mod exr_write;
 mod hdr;
 mod png_file;
+mod tiff_file;
 
 pub mod heat;
 pub mod metrics;

@@ -1,6 +1,6 @@
 //! PNG in and out, 8 and 16 bit sRGB, with text chunks.
 //!
-//! Colour is taken to be sRGB-coded whatever a `gAMA` or `iCCP` chunk says.
+//! Colour is taken to be sRGB-coded unless a `gAMA` or `cICP` chunk says that it is linear; profiles are not looked at.
 
 use crate::Texts;
 use crate::decode::{DecodedImage, Pixels};
@@ -37,7 +37,8 @@ pub fn read_png(bytes: &[u8]) -> Result<DecodedImage> {
         }
         _ => Pixels::Srgb8(rgba(&samples, frame.color_type, u8::MAX)),
     };
-    Ok(DecodedImage { width, height, pixels, texts: texts_of(reader.info()) })
+    let info = reader.info();
+    Ok(DecodedImage { width, height, pixels, texts: texts_of(info), says_linear: says_linear(info) })
 }
 
 /// The bytes of an 8-bit PNG. `samples` holds 1 (grey), 2 (grey and alpha), 3 (RGB) or 4 (RGBA) codes per pixel.
@@ -96,6 +97,16 @@ fn rgba<T: Copy>(samples: &[T], colour: ColorType, opaque: T) -> Vec<[T; 4]> {
         ColorType::Rgb => samples.chunks_exact(3).map(|p| [p[0], p[1], p[2], opaque]).collect(),
         ColorType::Rgba => samples.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect(),
     }
+}
+
+/// A `cICP` chunk of transfer 8, or a `gAMA` chunk of 1 that no `sRGB` or `iCCP` chunk overrules.
+fn says_linear(info: &png::Info) -> bool {
+    const LINEAR: u8 = 8;
+    if let Some(points) = &info.coding_independent_code_points {
+        return points.transfer_function == LINEAR;
+    }
+    let is_overruled = info.srgb.is_some() || info.icc_profile.is_some();
+    !is_overruled && info.gama_chunk.is_some_and(|gamma| (gamma.into_value() - 1.0).abs() < 0.01)
 }
 
 fn texts_of(info: &png::Info) -> Texts {

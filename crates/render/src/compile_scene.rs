@@ -407,8 +407,13 @@ fn compile(
 
     let infos = |parts: Vec<PlacedPart>| -> Vec<PartInfo> { parts.into_iter().map(|p| p.info).collect() };
     let has_hulls = materials.iter().any(|m| m.is_hull);
+    // A width that nothing is filtered over would only cost time.
+    let texture_footprint =
+        if textures.filters() { singles.params(Kind::Film).number("texture_footprint") as f32 } else { 0.0 };
     let scene = Scene {
         color,
+        texture_footprint,
+        needs_patches: texture_footprint > 0.0 || textures.looks_around(),
         keeps_spectra: singles.params(Kind::Film).integer("spectral_bins") > 0,
         disperses: materials.iter().any(|m| m.medium.as_ref().is_some_and(|x| x.ior.is_dispersive())),
         accel,

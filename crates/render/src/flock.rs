@@ -215,7 +215,7 @@ impl<'a, O: Observer> Flock<'a, O> {
         let found;
         let surface = match &hit {
             Some(hit) => {
-                found = scene.surface(&path.ray, hit);
+                found = scene.surface_seen(&path.ray, hit, path.cone);
                 Some(&found)
             }
             None => None,

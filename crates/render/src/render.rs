@@ -10,6 +10,7 @@ use crate::observe::{Observer, SampleId};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{PRIMARY, Scene, SurfaceHit};
 use crate::statistics::Statistics;
+use crate::textures::RayCone;
 use kirkas_geometry::hash::of_name;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -190,6 +191,10 @@ impl Renderer<'_> {
         };
         let mut ray = camera.ray(&sample, self.resolution);
         ray.mask = PRIMARY;
+        let cone = match self.scene.texture_footprint {
+            0.0 => RayCone::POINT,
+            pixels => camera.cone(&sample, self.resolution).times(pixels),
+        };
         let lanes = shared.map_or_else(|| self.scene.lanes(|| sampler.one(WAVELENGTH)), |s| s.lanes);
         let path = PathState {
             ray,
@@ -199,6 +204,7 @@ impl Renderer<'_> {
             kind: RayKind::Camera,
             branch: 0,
             media: self.scene.camera_media,
+            cone,
             passed: 0,
             travelled: 0.0,
             last: None,

@@ -9,9 +9,10 @@ use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
 use crate::media::{Volume, Way};
 use crate::sampler::Sampler;
-use crate::shapes::Surface;
-use crate::textures::{TexturePoint, Textures};
+use crate::shapes::{Detail, Surface, SurfacePoint};
+use crate::textures::{Patch, RayCone, TexturePoint, Textures};
 use kirkas_accel::{Accel, Hit, HitFilter, NO_INSTANCE};
+use kirkas_geometry::elementary::cbrt;
 use kirkas_geometry::hash::{combine, of_name, unit_f32};
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
@@ -82,6 +83,10 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// All textures.
     pub textures: Textures,
+    /// Width that textures are filtered over, in pixels; 0 where none is.
+    pub texture_footprint: f32,
+    /// Some texture looks at more of the surface than the point.
+    pub needs_patches: bool,
     /// All lights but the ambient ones.
     pub lights: Vec<LightEntry>,
     /// Ambient lights and their groups.
@@ -183,6 +188,36 @@ pub fn ray_to_light(origin: Vec3, s: &LightSample, like: &Ray) -> Ray {
     Ray { origin, direction, t_min: 0.0, t_max: 1.0 - gamma(16), mask: SECONDARY, ..*like }
 }
 
+/// What textures may ask of the surface around `point`, in part space; `placement` maps to the world and back.
+#[inline(never)]
+fn patch_at(
+    surface: &dyn Surface,
+    hit: &Hit,
+    point: &SurfacePoint,
+    ray: &Ray,
+    cone: RayCone,
+    placement: Option<(&DAffine3, &DAffine3)>,
+) -> Patch {
+    let around = surface.patch(hit.primitive, hit.u, hit.v, point);
+    let object_from_part = surface.object_from_part();
+    let normal = placement.map_or(point.normal, |(_, to_part)| transform_normal(to_part, point.normal).normalize());
+    let mut patch = Patch {
+        object_normal: (object_from_part.inverse().transpose() * point.normal).as_vec3(),
+        world_normal: normal.as_vec3(),
+        color: around.color,
+        ..Patch::POINT
+    };
+    if cone != RayCone::POINT {
+        let distance = hit.t * ray.direction.length();
+        let world = cone.after(distance).axes_on(ray.direction.as_dvec3(), normal);
+        let part = world.map(|axis| placement.map_or(axis, |(_, to_part)| to_part.transform_vector3(axis)));
+        patch.world_axes = world.map(|axis| axis.as_vec3());
+        patch.object_axes = part.map(|axis| (object_from_part * axis).as_vec3());
+        patch.uv_axes = part.map(|axis| around.uv_step(axis));
+    }
+    patch
+}
+
 impl Scene {
     /// What the accelerator's hit knows of its part.
     pub fn part(&self, hit: &Hit) -> &PartInfo {
@@ -220,14 +255,23 @@ impl Scene {
         Interface::between(lanes, outside, if is_known { &inside.ior } else { outside })
     }
 
-    /// Everything shading needs at a hit.
+    /// Everything shading needs at a hit, for a ray that stands for itself alone.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceHit {
+        self.surface_seen(ray, hit, RayCone::POINT)
+    }
+
+    /// Everything shading needs at a hit of a ray in the middle of `cone`.
+    pub fn surface_seen(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> SurfaceHit {
         let part = self.part(hit);
         let (mut material, mut object) = (part.material, part.object);
         let mut point;
+        let mut patch = Patch::POINT;
         if hit.instance.is_world() {
             let detail = self.materials[material as usize].detail;
             point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, ray, detail);
+            if self.needs_patches && detail == Detail::Texture {
+                patch = patch_at(&*part.surface, hit, &point, ray, cone, None);
+            }
         } else {
             // Ask in the instance's space, and bring the answer back.
             let instance = &self.instances[hit.instance.outermost() as usize];
@@ -244,6 +288,9 @@ impl Scene {
             object = instance.object.unwrap_or(object);
             let detail = self.materials[material as usize].detail;
             point = part.surface.point(hit.primitive, hit.u, hit.v, hit.t, &local, detail);
+            if self.needs_patches && detail == Detail::Texture {
+                patch = patch_at(&*part.surface, hit, &point, ray, cone, Some((&to_world, &to_part)));
+            }
             // The ray that leaves is rounded once more on its way into the instance.
             let error = point.error + point.position.abs() * f64::from(gamma(2));
             let a = &to_world.matrix3;
@@ -276,12 +323,27 @@ impl Scene {
                 uv: point.uv,
                 object_position: point.object_position,
                 world_position: point.position,
+                patch,
             },
             material,
             object,
             emission_group: part.emission_group,
             hit: *hit,
         }
+    }
+
+    /// Mean curvature of the surface at a hit (1 / scene unit), positive where it bulges towards where the ray came from.
+    pub fn curvature(&self, hit: &SurfaceHit) -> f32 {
+        let h = &hit.hit;
+        let in_part = self.part(h).surface.curvature(h.primitive, h.u, h.v);
+        let scale = match h.instance.outermost() {
+            NO_INSTANCE => 1.0,
+            i => match &self.instances[i as usize].still {
+                Some((_, to_part)) => cbrt(to_part.matrix3.determinant().abs()),
+                None => 1.0,
+            },
+        };
+        (in_part * scale * if hit.is_front { 1.0 } else { -1.0 }) as f32
     }
 
     /// Camera rays see what was hit.
@@ -312,10 +374,22 @@ impl Scene {
     /// Radiance that the surface itself sends towards where the ray came from.
     #[inline]
     pub fn emitted(&self, lanes: &Lanes, hit: &SurfaceHit) -> Light {
+        self.emitted_as(lanes, hit, &hit.texture)
+    }
+
+    /// The same by a lamp whose points are asked as well: its texture is as sharp here as there.
+    #[inline]
+    pub fn emitted_at_point(&self, lanes: &Lanes, hit: &SurfaceHit) -> Light {
+        match self.texture_footprint {
+            0.0 => self.emitted(lanes, hit),
+            _ => self.emitted_as(lanes, hit, &hit.texture.alone()),
+        }
+    }
+
+    #[inline]
+    fn emitted_as(&self, lanes: &Lanes, hit: &SurfaceHit, at: &TexturePoint) -> Light {
         match &self.material(hit).emission {
-            Some(e) if hit.is_front || e.two_sided => {
-                e.radiance(lanes, &self.textures, &hit.texture, || self.area_scale(hit))
-            }
+            Some(e) if hit.is_front || e.two_sided => e.radiance(lanes, &self.textures, at, || self.area_scale(hit)),
             _ => Light::BLACK,
         }
     }

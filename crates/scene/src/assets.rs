@@ -13,6 +13,8 @@ pub struct MeshData {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one per position, or empty.
     pub uvs: Vec<Vec2>,
+    /// Linear Rec.709 colours, one per position, or empty.
+    pub colors: Vec<Vec3>,
     /// Corners of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Runs of triangles with one material; empty when the file names none.
@@ -40,8 +42,8 @@ impl MeshData {
     /// All that must hold: attributes match, indices are in range, every number is finite.
     pub fn validate(&self) -> Result<(), String> {
         let n = self.positions.len();
-        if !self.normals.is_empty() && self.normals.len() != n || !self.uvs.is_empty() && self.uvs.len() != n {
-            return Err("normals or texture coordinates do not match the vertices in number".into());
+        if [self.normals.len(), self.uvs.len(), self.colors.len()].iter().any(|&m| m != 0 && m != n) {
+            return Err("normals, texture coordinates or colours do not match the vertices in number".into());
         }
         if let Some(i) = self.triangles.iter().position(|t| t.iter().any(|&i| i as usize >= n)) {
             return Err(format!("triangle {i} uses a vertex that does not exist (there are {n})"));

@@ -72,6 +72,11 @@ fn summary(file: &SceneFile, scene: &Scene) -> String {
         ("files", files.len()),
     ];
     let mut text: String = rows.iter().map(|(name, n)| format!("  {name:<12}{n:>12}\n")).collect();
+    for p in scene.textures.pictures() {
+        let meaning = if p.is_srgb { "sRGB" } else { "linear" };
+        let why = if p.is_chosen { "as told" } else { "by its kind" };
+        text += &format!("  picture {}: {} x {}, {meaning} ({why})\n", p.path, p.size.0, p.size.1);
+    }
     text += &format!("  {:<12}{bytes:>12}\n  {:<12}{:>12}\n", "file bytes", "tree bytes", built.bytes);
     text
 }

@@ -35,8 +35,13 @@ fn lossless_formats_give_the_codes_that_went_in() {
 
 #[test]
 fn linear_and_raw_numbers() {
-    let image =
-        DecodedImage { width: 1, height: 1, pixels: Pixels::Srgb8(vec![[0, 128, 255, 128]]), texts: Texts::new() };
+    let image = DecodedImage {
+        width: 1,
+        height: 1,
+        pixels: Pixels::Srgb8(vec![[0, 128, 255, 128]]),
+        texts: Texts::new(),
+        says_linear: false,
+    };
     assert_eq!(image.raw(), [[0.0, 128.0 / 255.0, 1.0, 128.0 / 255.0]]);
     assert_eq!(image.linear(), [[0.0, 0.215_860_5, 1.0, 128.0 / 255.0]]);
 }
@@ -49,4 +54,40 @@ fn alpha_of_an_exr_is_kept() {
     let alpha: Vec<f32> = decoded.linear().iter().map(|pixel| pixel[3]).collect();
     assert_eq!(alpha, [0.5, 1.0]);
     assert_eq!(decoded.rgb(), smooth_rgb(2, 1));
+}
+
+#[test]
+fn sixteen_bits_and_floats_of_a_tiff_are_kept() {
+    use tiff::encoder::{TiffEncoder, TiffValue, colortype};
+    fn tiff<C: colortype::ColorType>(samples: &[C::Inner]) -> Vec<u8>
+    where
+        [C::Inner]: TiffValue,
+    {
+        let mut file = std::io::Cursor::new(Vec::new());
+        TiffEncoder::new(&mut file).unwrap().write_image::<C>(2, 1, samples).unwrap();
+        file.into_inner()
+    }
+    let image = decode(&tiff::<colortype::RGB16>(&[1, 2, 3, 65_535, 0, 1000]), None).unwrap();
+    assert_eq!(image.pixels, Pixels::Srgb16(vec![[1, 2, 3, 65_535], [65_535, 0, 1000, 65_535]]));
+    assert!(!image.is_linear());
+    let image = decode(&tiff::<colortype::RGB32Float>(&[0.5, 2.0, -1.0, 0.0, 7.5, 1.0]), None).unwrap();
+    assert_eq!(image.linear(), [[0.5, 2.0, -1.0, 1.0], [0.0, 7.5, 1.0, 1.0]]);
+    assert!(image.is_linear());
+    let error = decode(&tiff::<colortype::Gray32>(&[1, 2]), None).unwrap_err();
+    assert!(matches!(error, ImageError::Unsupported { format: "TIFF", .. }), "{error}");
+}
+
+#[test]
+fn a_png_that_says_it_is_linear_is_taken_so() {
+    let plain = write_png8(1, 1, &[0, 128, 255], &Texts::new()).unwrap();
+    assert!(!decode(&plain, None).unwrap().is_linear());
+    // Before the pixels, in place of the `sRGB` chunk: `gAMA` of 1.
+    let mut linear = Vec::new();
+    let mut encoder = png::Encoder::new(&mut linear, 1, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_source_gamma(png::ScaledFloat::new(1.0));
+    encoder.write_header().unwrap().write_image_data(&[0, 128, 255]).unwrap();
+    let image = decode(&linear, None).unwrap();
+    assert!(image.is_linear());
+    assert_eq!(image.linear(), [[0.0, 128.0 / 255.0, 1.0, 1.0]]);
 }

@@ -52,7 +52,7 @@ proptest! {
     fn arbitrary_bytes_never_panic(
         start in prop::sample::select(vec![
             &b"\x89PNG\r\n\x1a\n"[..],
-            b"\x76\x2f\x31\x01\x02\0\0\0", b"#?RADIANCE\n", b"#?RGBE\n", b"\xff\xd8\xff", b"BM", b"",
+            b"\x76\x2f\x31\x01\x02\0\0\0", b"#?RADIANCE\n", b"#?RGBE\n", b"\xff\xd8\xff", b"BM", b"II*\0\x08\0\0\0", b"MM\0*\0\0\0\x08", b"",
         ]),
         rest in prop::collection::vec(any::<u8>(), 0..600),
     ) {

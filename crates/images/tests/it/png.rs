@@ -12,7 +12,10 @@ fn eight_bit_codes_and_texts_survive() {
     let codes: Vec<u8> = (0..=255).flat_map(|code| [code, 255 - code, code / 2]).collect();
     let back = read_png(&write_png8(16, 16, &codes, &texts).unwrap()).unwrap();
     let expected = codes.chunks_exact(3).map(|c| [c[0], c[1], c[2], 255]).collect();
-    assert_eq!(back, DecodedImage { width: 16, height: 16, pixels: Pixels::Srgb8(expected), texts });
+    assert_eq!(
+        back,
+        DecodedImage { width: 16, height: 16, pixels: Pixels::Srgb8(expected), texts, says_linear: false }
+    );
 }
 
 #[test]

@@ -46,7 +46,7 @@ pub fn smooth_rgb(width: u32, height: u32) -> RgbImage {
     })
 }
 
-/// Files of every format that can be written here, and of BMP, TGA and JPEG by the `image` crate.
+/// Files of every format that can be written here, and of BMP, TGA, TIFF and JPEG by the `image` crate.
 pub fn valid_files() -> Vec<(&'static str, Vec<u8>)> {
     let rgb = smooth_rgb(40, 33);
     let codes = to_srgb8(&rgb, 0.0, ToneCurve::Linear);
@@ -68,7 +68,16 @@ pub fn valid_files() -> Vec<(&'static str, Vec<u8>)> {
         ("jpg", coded(image::ImageFormat::Jpeg)),
         ("bmp", coded(image::ImageFormat::Bmp)),
         ("tga", coded(image::ImageFormat::Tga)),
+        ("tif", coded_tiff(&codes)),
     ]
+}
+
+/// A TIFF of 40 x 33 codes, packed.
+fn coded_tiff(codes: &[u8]) -> Vec<u8> {
+    use tiff::encoder::{TiffEncoder, colortype::RGB8, compression::Lzw};
+    let mut file = std::io::Cursor::new(Vec::new());
+    TiffEncoder::new(&mut file).unwrap().write_image_with_compression::<RGB8, _>(40, 33, Lzw, codes).unwrap();
+    file.into_inner()
 }
 
 /// A small EXR file as other programs write them: any compression, lines or tiles, mixed channels.

@@ -49,7 +49,12 @@ pub const SPEC: TypeSpec = TypeSpec {
     name: "image",
     doc: "A picture of the surroundings, in latitude and longitude.",
     params: &[
-        ParamSpec::new("file", ParamType::Path, Fallback::Required, "The picture: PNG, JPEG, BMP, TGA, HDR or EXR."),
+        ParamSpec::new(
+            "file",
+            ParamType::Path,
+            Fallback::Required,
+            "The picture: PNG, JPEG, BMP, TGA, TIFF, HDR or EXR.",
+        ),
         ParamSpec::choice(
             "encoding",
             &["auto", "srgb", "linear"],

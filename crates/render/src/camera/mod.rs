@@ -7,6 +7,7 @@ mod orthographic;
 mod perspective;
 mod thin_lens;
 
+use crate::textures::RayCone;
 use kirkas_geometry::transform::look_at;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Ray};
 use kirkas_scene::spec::ANY;
@@ -144,6 +145,19 @@ impl Camera {
         let origin = world_from_camera.transform_point3(local.origin);
         let direction = world_from_camera.transform_vector3(local.direction).normalize();
         Ray::new(origin.as_vec3(), direction.as_vec3()).at_time(sample.time as f32)
+    }
+
+    /// The width and spread of a ray of [`Camera::ray`]: what one pixel covers.
+    pub fn cone(&self, sample: &CameraSample, resolution: (u32, u32)) -> RayCone {
+        let film = FilmPlace::new(sample.film, resolution);
+        match &self.projection {
+            Projection::Perspective(p) => RayCone { width: 0.0, spread: p.pixel_angle(&film) as f32 },
+            Projection::ThinLens(p) => RayCone { width: 0.0, spread: p.pixel_angle(&film) as f32 },
+            Projection::Orthographic(p) => {
+                let scale = self.world_from_camera.matrix3.x_axis.length();
+                RayCone { width: (p.pixel_size(&film) * scale) as f32, spread: 0.0 }
+            }
+        }
     }
 
     /// The same camera with its shutter opened at `time`, in seconds, for as long as ever.

@@ -56,6 +56,11 @@ impl Orthographic {
         CameraRay { origin, direction: DVec3::NEG_Z }
     }
 
+    /// The side of a pixel.
+    pub(super) fn pixel_size(&self, film: &FilmPlace) -> f64 {
+        2.0 * self.half_height / film.height
+    }
+
     pub(super) fn see(&self, point: DVec3, film: &FilmPlace) -> Option<CameraSight> {
         let density = 1.0 / (self.half_height * self.half_height * film.aspect());
         let from = DVec3::new(point.x, point.y, 0.0);

@@ -79,6 +79,14 @@ impl Perspective {
         CameraRay { origin: DVec3::ZERO, direction: DVec3::new(film.x * half_x, film.y * half_y, -1.0) }
     }
 
+    /// The square root of the solid angle of a pixel at this place.
+    pub(super) fn pixel_angle(&self, film: &FilmPlace) -> f64 {
+        let (half_x, half_y) = self.half_sides(film);
+        let pixel = (2.0 * half_x / film.width) * (2.0 * half_y / film.height);
+        let length2 = 1.0 + film.x * half_x * film.x * half_x + film.y * half_y * film.y * half_y;
+        (pixel / (length2 * length2.sqrt())).sqrt()
+    }
+
     pub(super) fn project(&self, point: DVec3, film: &FilmPlace) -> Option<(f64, f64)> {
         let (half_x, half_y) = self.half_sides(film);
         (point.z < 0.0).then(|| (point.x / -point.z / half_x, point.y / -point.z / half_y))

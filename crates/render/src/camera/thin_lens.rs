@@ -103,6 +103,11 @@ impl ThinLens {
         CameraRay { origin, direction: central.direction - origin / self.focus_distance }
     }
 
+    /// As a pinhole's: in the plane of focus it is the same.
+    pub(super) fn pixel_angle(&self, film: &FilmPlace) -> f64 {
+        self.pinhole.pixel_angle(film)
+    }
+
     /// Where `u` is on the lens.
     fn lens_point(&self, u: (f32, f32)) -> DVec3 {
         let unit = match self.blades {

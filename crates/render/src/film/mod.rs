@@ -70,6 +70,9 @@ pub const SPEC: TypeSpec = TypeSpec {
         .unit("nm")
         .range((SpectralBins::RANGE[0], SpectralBins::RANGE[1])),
         ParamSpec::bool("light_groups", false, "Also keep one layer per light group; `kirkas relight` mixes them anew."),
+        ParamSpec::number("texture_footprint", 0.7, "Half width of the tent that textures are filtered under, as seen by the camera; 0 = not filtered.")
+            .unit("pixels")
+            .range((0.0, 1000.0)),
         ParamSpec::number("clamp", 0.0, "Firefly clamp: the most that one contribution to a sample may bring; 0 = no clamp. It darkens.")
             .unit("radiance")
             .range(NOT_NEGATIVE),

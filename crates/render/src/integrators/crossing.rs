@@ -5,8 +5,9 @@ use super::{Blocker, MediumStack, PathState, ShadowRay};
 use crate::media::Way;
 use crate::sampler::Sampler;
 use crate::scene::{AlphaFilter, Scene, SurfaceHit};
+use crate::textures::RayCone;
 use kirkas_geometry::{DVec3, Ray};
-use kirkas_optics::{Bsdf, Light, Lobe};
+use kirkas_optics::{Bsdf, BsdfSample, Light, Lobe};
 
 /// Covered boundaries passed in a row before a path is given up.
 const MOST_PASSED: u32 = 256;
@@ -24,10 +25,29 @@ pub fn passed(path: &PathState, hit: &SurfaceHit) -> Option<PathState> {
     (path.passed < MOST_PASSED).then(|| PathState {
         ray: hit.ray_towards(path.ray.direction.as_dvec3(), &path.ray),
         media,
+        cone: path.cone.after(distance(path, hit)),
         passed: path.passed + 1,
-        travelled: path.travelled + hit.t * path.ray.direction.length(),
+        travelled: path.travelled + distance(path, hit),
         ..*path
     })
+}
+
+fn distance(path: &PathState, hit: &SurfaceHit) -> f32 {
+    hit.t * path.ray.direction.length()
+}
+
+/// The cone of the path that goes on with `sample`.
+#[inline]
+pub fn cone_after(scene: &Scene, path: &PathState, hit: &SurfaceHit, sample: &BsdfSample) -> RayCone {
+    if path.cone == RayCone::POINT {
+        return RayCone::POINT;
+    }
+    let cone = path.cone.after(distance(path, hit));
+    match sample.lobe {
+        Lobe::DeltaReflection => cone.mirrored(scene.curvature(hit)),
+        Lobe::DeltaTransmission => cone.refracted(scene.curvature(hit), sample.eta),
+        _ => cone.scattered(sample.pdf),
+    }
 }
 
 /// The ray along `ray` that asks whether `light` arrives from lamp number `lamp`, through these bodies; `None` if there is no light

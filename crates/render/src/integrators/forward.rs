@@ -13,6 +13,7 @@ use crate::media::{FlightEnd, Volume, Way};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{AlphaFilter, Scene, SurfaceHit};
 use crate::statistics::Statistics;
+use crate::textures::RayCone;
 use kirkas_accel::{Hit, Query};
 use kirkas_geometry::hash::{combine, of_name};
 use kirkas_geometry::{DVec3, Ray};
@@ -182,6 +183,7 @@ impl<'a> Tracer<'a> {
             kind: RayKind::Camera,
             branch: 0,
             media: self.media[number],
+            cone: RayCone::POINT,
             passed: 0,
             travelled: 0.0,
             last: None,

@@ -15,6 +15,7 @@ use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
 use crate::statistics::Statistics;
+use crate::textures::RayCone;
 use kirkas_geometry::{DVec3, Ray};
 use kirkas_optics::{Lanes, Light};
 use kirkas_scene::{Diagnostic, Params, TypeSpec};
@@ -141,6 +142,8 @@ pub struct PathState {
     pub branch: u64,
     /// Bodies it is inside of.
     pub media: MediumStack,
+    /// What it stands for around its ray.
+    pub cone: RayCone,
     /// Surfaces passed without an event (an overlapped boundary) since the last bounce.
     pub passed: u32,
     /// Distance travelled through them.

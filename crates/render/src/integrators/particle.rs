@@ -82,6 +82,7 @@ impl<'a> Particle<'a> {
             depth: path.depth + 1,
             kind: RayKind::Diffuse,
             branch: combine(path.branch, BOUNCE),
+            cone: path.cone.after((self.position - path.ray.origin.as_dvec3()).length() as f32).scattered(s.pdf),
             passed: 0,
             travelled: 0.0,
             last: Some(LastVertex { position: self.position, normal: DVec3::ZERO, pdf: s.pdf }),

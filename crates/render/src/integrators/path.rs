@@ -216,7 +216,10 @@ pub(super) fn escape(scene: &Scene, path: &PathState, out: &mut StepOutput) {
 /// The path sees the surface shine, if it does.
 #[inline(always)]
 fn see_emission(scene: &Scene, path: &PathState, hit: &SurfaceHit, out: &mut StepOutput) {
-    let emitted = scene.emitted(&path.lanes, hit);
+    let emitted = match path.last {
+        Some(_) => scene.emitted_at_point(&path.lanes, hit),
+        None => scene.emitted(&path.lanes, hit),
+    };
     if !emitted.is_black() {
         let weight = match (&path.last, scene.pickable_of(hit)) {
             (Some(last), Some(light)) => {
@@ -376,6 +379,7 @@ impl<'a> Vertex<'a> {
             kind: kind_of(s.lobe),
             branch: combine(path.branch, BOUNCE),
             media: crossing::media_towards(scene, &path.media, hit, direction),
+            cone: crossing::cone_after(scene, path, hit, &s),
             passed: 0,
             travelled: 0.0,
             last: (!s.lobe.is_delta()).then_some(last),

@@ -77,6 +77,7 @@ impl Integrator for PathSimple {
                         (sampler.one(combine(path.branch, LOBE)), sampler.pair(combine(path.branch, DIRECTION)));
                     let wo = -path.ray.direction.normalize();
                     let Some(s) = volume.phase.sample(&path.lanes, even(&path), wo, u_lane, u) else { return };
+                    path.cone = path.cone.after(distance as f32).scattered(s.pdf);
                     path.throughput *= s.value / s.pdf;
                     path.depth += 1;
                     path.branch = combine(path.branch, BOUNCE);
@@ -115,7 +116,11 @@ impl Integrator for PathSimple {
                 continue;
             }
             if !(was_asked && self.next_event && scene.light_of(surface).is_some()) {
-                out.contributions.push((path.throughput * scene.emitted(&path.lanes, surface), surface.emission_group));
+                let emitted = match was_asked {
+                    true => scene.emitted_at_point(&path.lanes, surface),
+                    false => scene.emitted(&path.lanes, surface),
+                };
+                out.contributions.push((path.throughput * emitted, surface.emission_group));
             }
             if path.depth >= self.max_depth {
                 return;
@@ -134,6 +139,7 @@ impl Integrator for PathSimple {
             if !crossing::keeps_side(surface, direction, s.lobe) {
                 return;
             }
+            path.cone = crossing::cone_after(scene, &path, surface, &s);
             path.throughput *= s.weight();
             path.lanes = s.lanes(path.lanes);
             path.depth += 1;
@@ -249,7 +255,7 @@ fn closest(scene: &Scene, path: &PathState, sampler: &Sampler, out: &mut StepOut
     let filter = AlphaFilter { scene, key: |_| combine(sampler.key(), path.branch) };
     out.counted.diffuse_rays += 1;
     let hit = scene.accel.closest_hit(&path.ray, Query::filtered(&filter), 0, &mut out.counted.search)?;
-    Some(scene.surface(&path.ray, &hit))
+    Some(scene.surface_seen(&path.ray, &hit, path.cone))
 }
 
 /// Add the light that a shadow ray asks for, unless something is in its way.

@@ -327,6 +327,7 @@ impl Whitted {
             kind,
             branch: combine(path.branch, u64::from(number) << 8 | lobe as u64),
             media: crossing::media_towards(scene, &path.media, hit, direction),
+            cone: crossing::cone_after(scene, path, hit, sample),
             passed: 0,
             travelled: 0.0,
             last: None,

@@ -6,7 +6,7 @@ use super::tree::LightBounds;
 use super::{Cone, LightSample, Target};
 use crate::materials::{Emission, Material};
 use crate::shapes::{AreaSample, Detail, Surface};
-use crate::textures::{TexturePoint, Textures};
+use crate::textures::{Patch, TexturePoint, Textures};
 use kirkas_geometry::low_discrepancy::owen_sobol_2d;
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
@@ -98,7 +98,7 @@ impl AreaLight {
         }
         let pdf = per_solid_angle.unwrap_or(s.pdf_area * r2 / cosine);
         let material = &materials[self.material as usize];
-        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
+        let at = self.texture_point(textures, s, s.position, s.normal);
         // The shadow ray ends short of the lamp, so the lamp's own opacity counts here.
         let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
         let radiance = emission.radiance(lanes, textures, &at, || self.per_power()) * opacity;
@@ -139,7 +139,7 @@ impl AreaLight {
         let normal = s.normal * side;
         let local = square_to_cosine_hemisphere((x, v.1));
         let direction = Frame::from_z(normal.as_vec3()).to_world(local).as_dvec3().normalize();
-        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: s.position };
+        let at = self.texture_point(textures, &s, s.position, s.normal);
         let opacity = if material.is_opaque() { 1.0 } else { material.alpha(textures, &at) };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let power =
@@ -231,10 +231,30 @@ impl AreaLight {
         samples.map(|s| self.glow(emission, textures, &s)).sum::<f64>() / f64::from(PROBES)
     }
 
+    /// Where textures look at a sample that stands there in the world.
+    fn texture_point(
+        &self,
+        textures: &Textures,
+        s: &AreaSample,
+        world_position: DVec3,
+        world_normal: DVec3,
+    ) -> TexturePoint {
+        let patch = match textures.looks_around() {
+            false => Patch::POINT,
+            true => Patch {
+                object_normal: (self.surface.object_from_part().inverse().transpose() * s.part_normal).as_vec3(),
+                world_normal: world_normal.as_vec3(),
+                color: s.color,
+                ..Patch::POINT
+            },
+        };
+        TexturePoint { uv: s.uv, object_position: s.object_position, world_position, patch }
+    }
+
     /// Radiance at a point of part space, all lanes together.
     fn glow(&self, emission: &Emission, textures: &Textures, s: &AreaSample) -> f64 {
         let position = self.placement.as_ref().map_or(s.position, |p| p.at(0.0).transform_point3(s.position));
-        let at = TexturePoint { uv: s.uv, object_position: s.object_position, world_position: position };
+        let at = self.texture_point(textures, s, position, s.normal);
         emission.radiance(&Lanes::RGB, textures, &at, || self.per_power()).sum()
     }
 }

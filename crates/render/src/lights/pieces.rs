@@ -217,7 +217,8 @@ fn part(facets: &mut [u32], centers: &[DVec3], size: usize, first: usize, starts
 mod tests {
     use super::*;
     use crate::shapes::{Facet, SurfacePoint};
-    use kirkas_geometry::{Ray, Vec3};
+    use crate::textures::SurfacePatch;
+    use kirkas_geometry::{DMat3, Ray, Vec3};
 
     /// Squares in a spiral, larger and larger.
     struct Squares(u32);
@@ -231,6 +232,12 @@ mod tests {
         }
         fn sample_area(&self, _: (f32, f32), _: Detail) -> Option<AreaSample> {
             None
+        }
+        fn patch(&self, _: u32, _: f32, _: f32, _: &SurfacePoint) -> SurfacePatch {
+            unreachable!("no ray is traced")
+        }
+        fn object_from_part(&self) -> DMat3 {
+            DMat3::IDENTITY
         }
         fn bounds(&self) -> Bounds3 {
             Bounds3::EMPTY

@@ -5,7 +5,9 @@
 
 use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
 use crate::lights::Cone;
+use crate::textures::SurfacePatch;
 use kirkas_accel::{Shape, UserShape};
+use kirkas_geometry::elementary::cbrt;
 use kirkas_geometry::rounding::gamma;
 use kirkas_geometry::transform::{is_invertible, transform_normal};
 use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Ray};
@@ -29,6 +31,14 @@ pub trait Canonical: Send + Sync + 'static {
 
     /// Normal, texture coordinates and tangent at a point of `face`.
     fn local(&self, p: DVec3, face: u8) -> Local;
+
+    /// Derivative of position by `uv[1]` there.
+    fn bitangent(&self, p: DVec3, face: u8) -> DVec3;
+
+    /// About the mean curvature of `face`, positive where it bulges along its normal.
+    fn curvature(&self, _face: u8) -> f64 {
+        0.0
+    }
 
     /// The area after the linear map `m`; `None` if infinite or not known for such a map.
     fn area(&self, m: &DMat3) -> Option<f64>;
@@ -241,6 +251,19 @@ impl<C: Canonical> Surface for Placed<C> {
         }
     }
 
+    fn patch(&self, _primitive: u32, u: f32, _v: f32, point: &SurfacePoint) -> SurfacePatch {
+        let bitangent = self.shape.bitangent(self.canonical_point(point.position), u as u8);
+        SurfacePatch { tangents: [point.tangent, self.part_from_canonical.matrix3 * bitangent], color: [0.0; 4] }
+    }
+
+    fn object_from_part(&self) -> DMat3 {
+        self.object_from_canonical.matrix3 * self.canonical_from_part
+    }
+
+    fn curvature(&self, _primitive: u32, u: f32, _v: f32) -> f64 {
+        self.shape.curvature(u as u8) * cbrt(self.canonical_from_part.determinant().abs())
+    }
+
     fn area(&self) -> Option<f64> {
         self.area
     }
@@ -249,11 +272,14 @@ impl<C: Canonical> Surface for Placed<C> {
         let area = self.area?;
         let (p, face) = self.shape.sample(&self.part_from_canonical.matrix3, (f64::from(u.0), f64::from(u.1)));
         let local = self.shape.local(p, face);
+        let normal = self.normal(&local);
         Some(AreaSample {
             position: self.part_from_canonical.transform_point3(p),
-            normal: self.normal(&local),
+            normal,
             uv: local.uv.map(|x| x as f32),
             object_position: self.object_position(p, detail),
+            part_normal: normal,
+            color: [0.0; 4],
             pdf_area: 1.0 / area,
         })
     }

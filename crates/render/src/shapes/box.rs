@@ -114,6 +114,14 @@ impl Canonical for UnitCube {
         Local { normal, uv, tangent }
     }
 
+    fn bitangent(&self, _p: DVec3, face: u8) -> DVec3 {
+        match face {
+            2 => DVec3::Z,
+            3 => DVec3::NEG_Z,
+            _ => DVec3::Y,
+        }
+    }
+
     fn area(&self, m: &DMat3) -> Option<f64> {
         Some(2.0 * Self::areas(m).iter().sum::<f64>())
     }

@@ -95,6 +95,10 @@ impl Canonical for Disk {
         Local { normal: DVec3::Z, uv: [0.5 + 0.5 * p.x, 0.5 + 0.5 * p.y], tangent: DVec3::new(2.0, 0.0, 0.0) }
     }
 
+    fn bitangent(&self, _p: DVec3, _face: u8) -> DVec3 {
+        DVec3::new(0.0, 2.0, 0.0)
+    }
+
     fn area(&self, m: &DMat3) -> Option<f64> {
         Some(PI * (1.0 - self.hole * self.hole) * m.x_axis.cross(m.y_axis).length())
     }

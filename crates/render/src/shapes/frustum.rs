@@ -154,6 +154,22 @@ impl Canonical for Frustum {
         }
     }
 
+    fn bitangent(&self, p: DVec3, face: u8) -> DVec3 {
+        match face {
+            SIDE => {
+                let radius = (p.x * p.x + p.y * p.y).sqrt();
+                let outward = if radius > 0.0 { DVec3::new(p.x, p.y, 0.0) / radius } else { DVec3::X };
+                (outward * self.slope() + DVec3::Z) * self.height
+            }
+            BASE => DVec3::new(0.0, 2.0, 0.0),
+            _ => DVec3::new(0.0, 2.0 * self.top.max(f64::MIN_POSITIVE), 0.0),
+        }
+    }
+
+    fn curvature(&self, face: u8) -> f64 {
+        if face == SIDE { 1.0 / (1.0 + self.top) } else { 0.0 }
+    }
+
     fn area(&self, m: &DMat3) -> Option<f64> {
         let scale = similarity_scale(m)?;
         Some(self.areas().iter().sum::<f64>() * scale * scale)

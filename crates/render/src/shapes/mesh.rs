@@ -171,9 +171,14 @@ pub(super) fn build_mesh(source: Source, normals: Normals, input: &ShapeInput) -
     };
 
     let runs = runs(&data.parts, data.triangles.len());
-    let MeshData { positions, uvs, mut triangles, .. } = data;
-    let mesh =
-        Arc::new(PlacedMesh { positions: Arc::new(positions), normals: shading, uvs, object_from_part: m.inverse() });
+    let MeshData { positions, uvs, colors, mut triangles, .. } = data;
+    let mesh = Arc::new(PlacedMesh {
+        positions: Arc::new(positions),
+        normals: shading,
+        uvs,
+        colors,
+        object_from_part: m.inverse(),
+    });
     Ok(runs
         .iter()
         .map(|(range, material)| {

@@ -26,8 +26,9 @@ mod spheres;
 mod triangles;
 
 use crate::lights::Cone;
+use crate::textures::SurfacePatch;
 use kirkas_accel as accel;
-use kirkas_geometry::{Bounds3, DAffine3, DVec3, Ray};
+use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Ray};
 use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, SourceId, TypeSpec};
 use std::sync::Arc;
 
@@ -131,6 +132,10 @@ pub struct AreaSample {
     pub uv: [f32; 2],
     /// The point in object space: where solid textures look.
     pub object_position: DVec3,
+    /// The normal in part space, also once the sample has been placed in the world.
+    pub part_normal: DVec3,
+    /// Colour of the mesh's vertices, linear, and 1; zeros where it has none.
+    pub color: [f32; 4],
     /// Density per area of part space (1 / scene unit squared).
     pub pdf_area: f64,
 }
@@ -187,6 +192,17 @@ pub trait Surface: Send + Sync {
     /// The number of what is there or not as a whole where it is partly opaque: a facet, or several in one plane.
     fn pane(&self, primitive: u32) -> u32 {
         primitive
+    }
+
+    /// The surface around a hit at `point`, for textures that are filtered or that look at more than the point.
+    fn patch(&self, primitive: u32, u: f32, v: f32, point: &SurfacePoint) -> SurfacePatch;
+
+    /// From part space to the object's, for directions.
+    fn object_from_part(&self) -> DMat3;
+
+    /// Mean curvature at a hit (1 / radius of a sphere), positive where the surface bulges along its normal; 0 if unknown.
+    fn curvature(&self, _primitive: u32, _u: f32, _v: f32) -> f64 {
+        0.0
     }
 
     /// A box around all of it, in part space.

@@ -71,6 +71,10 @@ impl Canonical for Plane {
         Local { normal: DVec3::Z, uv: [p.x, p.y], tangent: DVec3::X }
     }
 
+    fn bitangent(&self, _p: DVec3, _face: u8) -> DVec3 {
+        DVec3::Y
+    }
+
     fn area(&self, _m: &DMat3) -> Option<f64> {
         None
     }

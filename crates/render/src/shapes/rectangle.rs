@@ -30,8 +30,9 @@ use super::analytic::degenerate;
 use super::triangles::{PlacedMesh, TriangleSurface};
 use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
 use crate::lights::Cone;
+use crate::textures::SurfacePatch;
 use kirkas_geometry::transform::is_invertible;
-use kirkas_geometry::{Bounds3, DAffine3, DVec3, Ray};
+use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Ray};
 use kirkas_scene::{Diagnostic, Kind, ParamSpec, TypeSpec};
 use std::sync::Arc;
 
@@ -83,6 +84,7 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
         positions: Arc::new(corners.to_vec()),
         normals: Vec::new(),
         uvs: Vec::new(),
+        colors: Vec::new(),
         object_from_part: m.inverse(),
     };
     let (triangles, shape) = TriangleSurface::new(Arc::new(mesh), triangles);
@@ -114,6 +116,14 @@ impl Surface for Rectangle {
         SurfacePoint { uv, tangent: self.edge_u, ..self.triangles.point(primitive, u, v, t, ray, detail) }
     }
 
+    fn patch(&self, _primitive: u32, _u: f32, _v: f32, _point: &SurfacePoint) -> SurfacePatch {
+        SurfacePatch { tangents: [self.edge_u, self.edge_v], color: [0.0; 4] }
+    }
+
+    fn object_from_part(&self) -> DMat3 {
+        self.object_from_part.matrix3
+    }
+
     fn area(&self) -> Option<f64> {
         Some(self.area)
     }
@@ -124,7 +134,15 @@ impl Surface for Rectangle {
             Detail::Place => DVec3::ZERO,
             Detail::Texture => self.object_from_part.transform_point3(position),
         };
-        Some(AreaSample { position, normal: self.normal, uv: [u.0, u.1], object_position, pdf_area: 1.0 / self.area })
+        Some(AreaSample {
+            position,
+            normal: self.normal,
+            uv: [u.0, u.1],
+            object_position,
+            part_normal: self.normal,
+            color: [0.0; 4],
+            pdf_area: 1.0 / self.area,
+        })
     }
 
     fn pane(&self, _primitive: u32) -> u32 {

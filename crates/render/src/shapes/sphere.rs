@@ -64,6 +64,13 @@ pub(super) fn sphere_tangent(n: DVec3) -> DVec3 {
     DVec3::new(n.z, 0.0, -n.x) * TAU
 }
 
+/// The way in which `v` grows there; as long as half a turn.
+pub(super) fn sphere_bitangent(n: DVec3) -> DVec3 {
+    let sine = (n.x * n.x + n.z * n.z).sqrt();
+    let level = if sine > 0.0 { DVec3::new(n.x, 0.0, n.z) / sine } else { DVec3::X };
+    (DVec3::Y * sine - level * n.y) * PI
+}
+
 /// A unit direction, uniform over the sphere.
 pub(super) fn uniform_direction(u: (f64, f64)) -> DVec3 {
     let y = 1.0 - 2.0 * u.0;
@@ -98,6 +105,14 @@ impl Canonical for UnitSphere {
 
     fn local(&self, p: DVec3, _face: u8) -> Local {
         Local { normal: p, uv: sphere_uv(p), tangent: sphere_tangent(p) }
+    }
+
+    fn bitangent(&self, p: DVec3, _face: u8) -> DVec3 {
+        sphere_bitangent(p)
+    }
+
+    fn curvature(&self, _face: u8) -> f64 {
+        1.0
     }
 
     fn area(&self, m: &DMat3) -> Option<f64> {

@@ -1,8 +1,9 @@
 //! The surface of spheres that the accelerator holds as they are: one, or many of one object.
 
 use super::analytic::{curved_error, degenerate, similarity_scale};
-use super::sphere::{sphere_tangent, sphere_uv, uniform_direction};
+use super::sphere::{sphere_bitangent, sphere_tangent, sphere_uv, uniform_direction};
 use super::{AreaSample, Detail, Part, ShapeInput, Surface, SurfacePoint};
+use crate::textures::SurfacePatch;
 use core::f64::consts::{PI, TAU};
 use kirkas_accel::{Shape, Sphere};
 use kirkas_geometry::elementary::sin_cos;
@@ -73,7 +74,7 @@ impl SphereSet {
             Detail::Place => ([0.0; 2], DVec3::ZERO),
             Detail::Texture => (uv(self.normal_in_object(normal)), self.object_from_part.transform_point3(position)),
         };
-        AreaSample { position, normal, uv, object_position, pdf_area }
+        AreaSample { position, normal, uv, object_position, part_normal: normal, color: [0.0; 4], pdf_area }
     }
 
     /// The cone in which the only sphere is seen from `from`; `None` from within, and from its own surface, where rounding would
@@ -129,6 +130,20 @@ impl Surface for SphereSet {
                 Detail::Texture => self.object_from_part.transform_point3(position),
             },
         }
+    }
+
+    fn patch(&self, primitive: u32, _u: f32, _v: f32, point: &SurfacePoint) -> SurfacePatch {
+        let n = self.normal_in_object(point.normal);
+        let radius = f64::from(self.spheres[primitive as usize].radius);
+        SurfacePatch { tangents: [point.tangent, self.part_turn * sphere_bitangent(n) * radius], color: [0.0; 4] }
+    }
+
+    fn object_from_part(&self) -> DMat3 {
+        self.object_from_part.matrix3
+    }
+
+    fn curvature(&self, primitive: u32, _u: f32, _v: f32) -> f64 {
+        1.0 / f64::from(self.spheres[primitive as usize].radius)
     }
 
     fn area(&self) -> Option<f64> {

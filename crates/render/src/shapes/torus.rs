@@ -146,6 +146,15 @@ impl Canonical for Torus {
         Local { normal: DVec3::new(ring.x * out, ring.y * out, p.z), uv: [turn(p.y, p.x), turn(p.z, out)], tangent }
     }
 
+    fn bitangent(&self, p: DVec3, _face: u8) -> DVec3 {
+        let (ring, out) = Self::around_tube(p);
+        (DVec3::Z * out - ring * p.z) * TAU
+    }
+
+    fn curvature(&self, _face: u8) -> f64 {
+        0.5 / self.tube
+    }
+
     fn area(&self, m: &DMat3) -> Option<f64> {
         let scale = similarity_scale(m)?;
         Some(4.0 * PI * PI * self.tube * scale * scale)

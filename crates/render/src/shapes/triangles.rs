@@ -3,9 +3,10 @@
 use super::analytic::flat_error;
 use super::{AreaSample, Detail, Facet, Part, Surface, SurfacePoint};
 use crate::lights::Cone;
+use crate::textures::SurfacePatch;
 use kirkas_accel::Shape;
 use kirkas_geometry::warp::square_to_uniform_triangle;
-use kirkas_geometry::{Bounds3, DAffine3, DVec2, DVec3, Ray, Vec2, Vec3};
+use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec2, DVec3, Ray, Vec2, Vec3};
 use std::sync::{Arc, OnceLock};
 
 /// Some triangles of a mesh: those with one material.
@@ -25,6 +26,8 @@ pub struct PlacedMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one per position, or empty: each triangle its own barycentric ones.
     pub uvs: Vec<Vec2>,
+    /// Linear colours, one per position, or empty.
+    pub colors: Vec<Vec3>,
     /// For solid textures.
     pub object_from_part: DAffine3,
 }
@@ -79,6 +82,14 @@ impl TriangleSurface {
         }
     }
 
+    fn color(&self, primitive: u32, weights: [f64; 3]) -> [f32; 4] {
+        if self.mesh.colors.is_empty() {
+            return [0.0; 4];
+        }
+        let c = self.indices[primitive as usize].map(|i| self.mesh.colors[i as usize].as_dvec3());
+        mix(c, weights).as_vec3().extend(1.0).to_array()
+    }
+
     fn cumulative_area(&self) -> &[f64] {
         self.cumulative_area.get_or_init(|| {
             let mut sum = 0.0;
@@ -112,11 +123,17 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// Derivative of position by `uv[0]` (zero where the texture coordinates say nothing).
 fn tangent(p: [DVec3; 3], uv: [DVec2; 3]) -> DVec3 {
+    tangents(p, uv)[0]
+}
+
+/// Derivatives of position by both texture coordinates.
+#[inline(always)]
+fn tangents(p: [DVec3; 3], uv: [DVec2; 3]) -> [DVec3; 2] {
     let (e1, e2) = (p[1] - p[0], p[2] - p[0]);
     let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = d1.x * d2.y - d1.y * d2.x;
-    let t = (e1 * d2.y - e2 * d1.y) / determinant;
-    if t.is_finite() { t } else { DVec3::ZERO }
+    let finite = |t: DVec3| if t.is_finite() { t } else { DVec3::ZERO };
+    [finite((e1 * d2.y - e2 * d1.y) / determinant), finite((e2 * d1.x - e1 * d2.x) / determinant)]
 }
 
 impl Surface for TriangleSurface {
@@ -137,6 +154,29 @@ impl Surface for TriangleSurface {
             tangent: self.tangent(corners, uvs),
             object_position: self.object_position(position, detail),
         }
+    }
+
+    fn patch(&self, primitive: u32, u: f32, v: f32, _point: &SurfacePoint) -> SurfacePatch {
+        let (u, v) = (f64::from(u), f64::from(v));
+        let tangents = tangents(self.corners(primitive), self.uvs(primitive));
+        SurfacePatch { tangents, color: self.color(primitive, [1.0 - u - v, u, v]) }
+    }
+
+    fn object_from_part(&self) -> DMat3 {
+        self.mesh.object_from_part.matrix3
+    }
+
+    /// By how much the normals of the corners turn along the edges.
+    fn curvature(&self, primitive: u32, _u: f32, _v: f32) -> f64 {
+        if self.mesh.normals.is_empty() {
+            return 0.0;
+        }
+        let (p, normal) = (self.corners(primitive), normal(self.corners(primitive)));
+        let n = self.indices[primitive as usize].map(|i| self.mesh.normals[i as usize].as_dvec3());
+        let turn = |i: usize, j: usize| (n[j] - n[i]).dot(p[j] - p[i]) / (p[j] - p[i]).length_squared();
+        let mean = (turn(0, 1) + turn(1, 2) + turn(2, 0)) / 3.0;
+        let sign = if (n[0] + n[1] + n[2]).dot(normal) < 0.0 { -1.0 } else { 1.0 };
+        if mean.is_finite() { mean * sign } else { 0.0 }
     }
 
     fn area(&self) -> Option<f64> {
@@ -170,11 +210,17 @@ impl Surface for TriangleSurface {
         let weights = [1.0 - b1 - b2, b1, b2];
         let corners = self.corners(facet);
         let position = mix(corners, weights);
+        let normal = normal(corners);
         Some(AreaSample {
             position,
-            normal: normal(corners),
+            normal,
             uv: if detail == Detail::Texture { uv(self.uvs(facet), weights) } else { [0.0; 2] },
             object_position: self.object_position(position, detail),
+            part_normal: normal,
+            color: match detail {
+                Detail::Place => [0.0; 4],
+                Detail::Texture => self.color(facet, weights),
+            },
             pdf_area: 1.0 / area(corners),
         })
     }

@@ -1,18 +1,29 @@
 //! # image: a picture on a surface
 //!
-//! Puts a PNG, JPEG, BMP, TGA, HDR or EXR file on a surface by its texture coordinates: u to the right, v up.
+//! Puts a PNG, JPEG, BMP, TGA, TIFF, HDR or EXR file on a surface: by its texture coordinates, u to the right and v up, or by
+//! projection.
 //!
 //! ## Parameters
 //!
 //! - `file` (path, required): the picture, relative to the file that names it.
+//! - `mapping` (`uv`, `planar`, `spherical`, `cylindrical`, `box`, `triplanar`; default `uv`): how it lies on the surface; see
+//!   below.
 //! - `wrap` (`repeat`, `clamp`, `mirror`, `black`; default `repeat`): what lies beyond the picture: itself again, its
 //!   border stretched, its mirror image, or nothing (black, and transparent as a mask).
-//! - `filter` (`bilinear`, `nearest`; default `bilinear`): between texels: smooth, or the nearest one.
+//! - `filter` (`anisotropic`, `mipmap`, `bilinear`, `nearest`; default `anisotropic`): what a sample sees of the picture: the
+//!   mean over the ellipse that it stands for; over a square as wide as the ellipse is long; between the four nearest texels; or
+//!   the nearest one.
 //! - `encoding` (`auto`, `srgb`, `linear`; default `auto`): how the file's numbers mean light. `auto` takes codes of 8 or 16
-//!   bits as sRGB and floats as linear. For maps of numbers (roughness, masks without alpha) write `linear`.
+//!   bits as sRGB (unless a PNG file says in its header that they are linear) and floats as linear; `kirkas check` lists what
+//!   was taken. For maps of numbers (roughness, masks without alpha) write `linear`.
 //! - `scale` (two numbers, default `[1, 1]`): how often the picture fits into one unit of u and of v.
-//! - `offset` (two numbers, default `[0, 0]`): added to u and v after `scale`.
-//! - and those of all textures: `transform`, applied before `scale` and `offset`; `space` does not matter.
+//! - `rotation` (number, degrees, default 0): turns the picture counter-clockwise about the origin of u and v.
+//! - `offset` (two numbers, default `[0, 0]`): added to u and v after `scale` and `rotation`.
+//! - and those of all textures: `transform`, applied before `scale`, and `space`, for the mappings that project.
+//!
+//! Mappings: `uv` takes the shape's own texture coordinates; `planar` looks along -z (u = x, v = y); `spherical` and
+//! `cylindrical` wrap the picture once around the y axis (v from pole to pole, or v = y); `box` looks along the axis that the
+//! surface faces most; `triplanar` blends the views along all three axes.
 //!
 //! ## Example
 //!
@@ -25,29 +36,43 @@
 //!
 //! ## Limits
 //!
-//! Texels are not filtered over a pixel's footprint (no mip maps): far away the samples of each pixel must average them.
-//! Colours of an EXR file, which come multiplied by its alpha, are divided by it; numbers that are not finite count as 0.
+//! Filtering knows what a pixel of the picture covers, not how many samples share it: far away and at grazing angles detail is
+//! as fine as one sample per pixel can show without aliasing. Smaller copies make a picture take 2/3 more memory (floats: 1/3).
+//! Where `spherical` and `cylindrical` come around, filtering does not look across the seam. Colours of an EXR file, which come
+//! multiplied by its alpha, are divided by it; numbers that are not finite count as 0.
 //!
 //! ## References
 //!
-//! sRGB: IEC 61966-2-1:1999, decoded exactly and before filtering.
+//! sRGB: IEC 61966-2-1:1999, decoded exactly and before filtering. Williams 1983, "Pyramidal Parametrics"; McCormack et al. 1999,
+//! "Feline: Fast Elliptical Lines for Anisotropic Texture Mapping" (several lookups along the ellipse); Akenine-Möller et al.
+//! 2021, "Improved Shader and Texture Level of Detail Using Ray Cones".
 
-use super::{PatternPoint, TextureInput, TextureNames, mean};
-use kirkas_images::srgb::{srgb_to_linear, srgb8_to_linear};
-use kirkas_images::{DecodedImage, Pixels, decode};
-use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, Span, TypeSpec};
-use std::collections::BTreeMap;
+use super::image_files::ImageFiles;
+use super::texels::{Texels, Wrap, lerp};
+use super::{PatternPoint, TextureInput, mapping};
+use kirkas_geometry::elementary::{log2, sin_cos};
+use kirkas_scene::{Diagnostic, Fallback, Kind, ParamSpec, ParamType, TypeSpec};
 use std::sync::Arc;
 
 /// Its table.
 pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Texture,
     name: "image",
-    doc: "A picture, by texture coordinates.",
+    doc: "A picture, by texture coordinates or projected.",
     params: &[
-        ParamSpec::new("file", ParamType::Path, Fallback::Required, "the picture: PNG, JPEG, BMP, TGA, HDR or EXR"),
+        ParamSpec::new(
+            "file",
+            ParamType::Path,
+            Fallback::Required,
+            "the picture: PNG, JPEG, BMP, TGA, TIFF, HDR or EXR",
+        ),
+        mapping::FLAT,
         ParamSpec::choice("wrap", &["repeat", "clamp", "mirror", "black"], "what lies beyond the picture"),
-        ParamSpec::choice("filter", &["bilinear", "nearest"], "between texels: smooth, or the nearest one"),
+        ParamSpec::choice(
+            "filter",
+            &["anisotropic", "mipmap", "bilinear", "nearest"],
+            "what a sample sees: the mean over its ellipse, over a square, between texels, or the nearest one",
+        ),
         ParamSpec::choice(
             "encoding",
             &["auto", "srgb", "linear"],
@@ -59,7 +84,8 @@ pub const SPEC: TypeSpec = TypeSpec {
             Fallback::Vector2([1.0, 1.0]),
             "how often the picture fits into one unit of u and of v",
         ),
-        ParamSpec::new("offset", ParamType::Vector2, Fallback::Vector2([0.0, 0.0]), "added to u and v after `scale`"),
+        ParamSpec::number("rotation", 0.0, "turns the picture counter-clockwise, after `scale`").unit("degrees"),
+        ParamSpec::new("offset", ParamType::Vector2, Fallback::Vector2([0.0, 0.0]), "added to u and v at last"),
     ],
 };
 
@@ -67,25 +93,22 @@ pub const SPEC: TypeSpec = TypeSpec {
 pub(super) struct Image {
     texels: Arc<Texels>,
     wrap: Wrap,
-    is_bilinear: bool,
-    scale: [f64; 2],
+    filter: Filter,
+    /// From u and v to the picture's own, by columns.
+    turn: [[f64; 2]; 2],
     offset: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Wrap {
-    Repeat,
-    Clamp,
-    Mirror,
-    Black,
+enum Filter {
+    Anisotropic,
+    Mipmap,
+    Bilinear,
+    Nearest,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Encoding {
-    Auto,
-    Srgb,
-    Linear,
-}
+/// The most lookups along an ellipse.
+const MOST_TAPS: f64 = 16.0;
 
 impl Image {
     pub(super) fn compile(input: &TextureInput, files: &mut ImageFiles) -> Result<Self, Diagnostic> {
@@ -96,220 +119,85 @@ impl Image {
             Some("black") => Wrap::Black,
             _ => Wrap::Repeat,
         };
-        Ok(Image {
-            texels: files.read(input)?,
-            wrap,
-            is_bilinear: params.text("filter") != Some("nearest"),
-            scale: params.vector2("scale"),
-            offset: params.vector2("offset"),
-        })
+        let filter = match params.text("filter") {
+            Some("mipmap") => Filter::Mipmap,
+            Some("bilinear") => Filter::Bilinear,
+            Some("nearest") => Filter::Nearest,
+            _ => Filter::Anisotropic,
+        };
+        let texels = files.read(input)?;
+        if matches!(filter, Filter::Anisotropic | Filter::Mipmap) {
+            texels.prepare_levels();
+        }
+        let ([su, sv], degrees) = (params.vector2("scale"), params.number("rotation"));
+        // The picture turns one way as its coordinates turn the other.
+        let (s, c) = if degrees == 0.0 { (0.0, 1.0) } else { sin_cos(-degrees.to_radians()) };
+        let turn = [[su * c, su * s], [-sv * s, sv * c]];
+        Ok(Image { texels, wrap, filter, turn, offset: params.vector2("offset") })
+    }
+
+    pub(super) fn filters(&self) -> bool {
+        matches!(self.filter, Filter::Anisotropic | Filter::Mipmap)
     }
 
     pub(super) fn eval(&self, at: &PatternPoint) -> [f32; 4] {
-        // In texels, from the bottom left corner.
-        let place = |axis: usize, texels: u32| {
-            let at = (at.uv[axis] * self.scale[axis] + self.offset[axis]) * f64::from(texels);
-            if at.is_finite() { at } else { 0.0 }
+        let turned =
+            |[u, v]: [f64; 2]| [u * self.turn[0][0] + v * self.turn[1][0], u * self.turn[0][1] + v * self.turn[1][1]];
+        let [u, v] = turned(at.uv);
+        let uv = [u + self.offset[0], v + self.offset[1]];
+        let value = match self.filter {
+            Filter::Nearest => self.texels.level(0).nearest(self.wrap, uv),
+            Filter::Bilinear => self.texels.level(0).bilinear(self.wrap, uv),
+            Filter::Mipmap | Filter::Anisotropic => self.filtered(uv, at.uv_axes.map(turned)),
         };
-        let (x, y) = (place(0, self.texels.width), place(1, self.texels.height));
-        if !self.is_bilinear {
-            return self.texel(whole(x), whole(y));
+        self.texels.finish(value)
+    }
+
+    /// The mean over the ellipse with these axes.
+    fn filtered(&self, uv: [f64; 2], axes: [[f64; 2]; 2]) -> [f32; 4] {
+        let (width, height) = self.texels.size();
+        let length = |[u, v]: [f64; 2]| {
+            let (x, y) = (u * f64::from(width), v * f64::from(height));
+            (x * x + y * y).sqrt()
+        };
+        let (a, b) = (length(axes[0]), length(axes[1]));
+        let (long, major, minor) = if a >= b { (axes[0], a, b) } else { (axes[1], b, a) };
+        if !(major > 1.0) {
+            return self.texels.level(0).bilinear(self.wrap, uv);
         }
-        let (x, y) = (x - 0.5, y - 0.5);
-        let (i, j) = (whole(x), whole(y));
-        let (s, t) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
-        let row = |j| lerp(self.texel(i, j), self.texel(i + 1, j), s);
-        lerp(row(j), row(j + 1), t)
-    }
-
-    /// `up` counts rows from the bottom.
-    fn texel(&self, x: i64, up: i64) -> [f32; 4] {
-        match (self.wrap.apply(x, self.texels.width), self.wrap.apply(up, self.texels.height)) {
-            (Some(x), Some(up)) => self.texels.get(x, self.texels.height as usize - 1 - up),
-            _ => [0.0; 4],
+        if self.filter == Filter::Mipmap || !major.is_finite() {
+            return self.between_levels(uv, major);
         }
-    }
-}
 
-impl Wrap {
-    /// The column or row of the picture that is seen at `i`, of `n`.
-    fn apply(self, i: i64, n: u32) -> Option<usize> {
-        let n = i64::from(n);
-        let inside = match self {
-            Wrap::Repeat => i.rem_euclid(n),
-            Wrap::Clamp => i.clamp(0, n - 1),
-            Wrap::Mirror => {
-                let k = i.rem_euclid(2 * n);
-                if k < n { k } else { 2 * n - 1 - k }
-            }
-            Wrap::Black if (0..n).contains(&i) => i,
-            Wrap::Black => return None,
-        };
-        Some(inside as usize)
-    }
-}
-
-/// The largest whole number not above `x`, far from the ends of `i64`.
-fn whole(x: f64) -> i64 {
-    const FAR: f64 = (1_i64 << 52) as f64;
-    x.floor().clamp(-FAR, FAR) as i64
-}
-
-fn lerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
-    std::array::from_fn(|lane| a[lane] * (1.0 - t) + b[lane] * t)
-}
-
-/// A decoded picture: linear colour and, last, the number it means as a mask.
-#[derive(Debug, PartialEq)]
-struct Texels {
-    width: u32,
-    height: u32,
-    has_alpha: bool,
-    data: TexelData,
-}
-
-#[derive(Debug, PartialEq)]
-enum TexelData {
-    /// A quarter of the memory: decoded by table when looked up.
-    Codes {
-        codes: Vec<[u8; 4]>,
-        linear_from_code: Box<[f32; 256]>,
-    },
-    Floats(Vec<[f32; 4]>),
-}
-
-impl Texels {
-    fn new(image: DecodedImage, encoding: Encoding) -> Self {
-        let (width, height) = (image.width, image.height);
-        let data = match (image.pixels, encoding) {
-            (Pixels::Srgb8(codes), encoding) => {
-                let linear_from_code = Box::new(std::array::from_fn(|code| match encoding {
-                    Encoding::Linear => code as f32 / 255.0,
-                    Encoding::Auto | Encoding::Srgb => srgb8_to_linear(code as u8),
-                }));
-                TexelData::Codes { codes, linear_from_code }
-            }
-            (pixels @ Pixels::Srgb16(_), encoding) => {
-                let image = DecodedImage { width, height, pixels, texts: Default::default() };
-                TexelData::Floats(if encoding == Encoding::Linear { image.raw() } else { image.linear() })
-            }
-            (Pixels::Linear(mut pixels), encoding) => {
-                pixels.iter_mut().for_each(|pixel| clean(pixel, encoding));
-                TexelData::Floats(pixels)
-            }
-        };
-        let has_alpha = match &data {
-            TexelData::Codes { codes, .. } => codes.iter().any(|code| code[3] != 255),
-            TexelData::Floats(pixels) => pixels.iter().any(|pixel| pixel[3] != 1.0),
-        };
-        Texels { width, height, has_alpha, data }
-    }
-
-    fn get(&self, x: usize, y: usize) -> [f32; 4] {
-        let index = y * self.width as usize + x;
-        let [r, g, b, a] = match &self.data {
-            TexelData::Codes { codes, linear_from_code } => {
-                let [r, g, b, a] = codes[index];
-                let linear = |code: u8| linear_from_code[usize::from(code)];
-                [linear(r), linear(g), linear(b), f32::from(a) / 255.0]
-            }
-            TexelData::Floats(pixels) => pixels[index],
-        };
-        [r, g, b, if self.has_alpha { a } else { mean([r, g, b]) }]
-    }
-}
-
-/// Make a float pixel finite, not multiplied by its alpha, and linear.
-fn clean(pixel: &mut [f32; 4], encoding: Encoding) {
-    let alpha = pixel[3];
-    for lane in &mut pixel[..3] {
-        if alpha > 0.0 && alpha < 1.0 {
-            *lane /= alpha;
+        // Look several times along the ellipse, each time as wide as it is across, or as the lookups are apart.
+        let count = (2.0 * major / minor.max(1.0)).ceil().clamp(1.0, MOST_TAPS);
+        let width = minor.max(2.0 * major / count);
+        let (mut sum, mut weights) = ([0.0_f32; 4], 0.0_f32);
+        for i in 0..count as u32 {
+            // From -1 to 1, with the weights of a tent.
+            let along = (2.0 * f64::from(i) + 1.0) / count - 1.0;
+            let weight = (1.0 - along.abs()) as f32;
+            let place = [uv[0] + long[0] * along, uv[1] + long[1] * along];
+            let value = self.between_levels(place, width);
+            sum = std::array::from_fn(|lane| sum[lane] + value[lane] * weight);
+            weights += weight;
         }
-        if encoding == Encoding::Srgb {
-            *lane = srgb_to_linear(*lane);
+        sum.map(|lane| lane / weights)
+    }
+
+    /// The mean over a square of `width` texels, between the two sizes of the picture that are nearest to it.
+    fn between_levels(&self, uv: [f64; 2], width: f64) -> [f32; 4] {
+        let level = if width > 1.0 { log2(width) } else { 0.0 };
+        let last = self.texels.last_level();
+        let below = level as usize;
+        if below >= last {
+            return self.texels.level(last).bilinear(self.wrap, uv);
         }
-    }
-    for lane in pixel {
-        *lane = if lane.is_finite() { *lane } else { 0.0 };
-    }
-}
-
-/// A picture's linear colours, row by row from the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// In texels.
-    pub width: usize,
-    /// In texels.
-    pub height: usize,
-    /// `width * height` of them, linear Rec.709.
-    pub texels: Vec<[f32; 3]>,
-}
-
-impl From<&Texels> for Picture {
-    fn from(t: &Texels) -> Self {
-        let (width, height) = (t.width as usize, t.height as usize);
-        let color = |i: usize| {
-            let [r, g, b, _] = t.get(i % width, i / width);
-            [r, g, b]
-        };
-        Picture { width, height, texels: (0..width * height).map(color).collect() }
-    }
-}
-
-/// Pictures that have been read: materials name the same one more than once.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ImageFiles(BTreeMap<(Folder, String, Encoding), Arc<Texels>>);
-
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Folder {
-    OfSource(u32),
-    Path(String),
-}
-
-impl ImageFiles {
-    fn read(&mut self, input: &TextureInput) -> Result<Arc<Texels>, Diagnostic> {
-        let encoding = match input.params.text("encoding") {
-            Some("srgb") => Encoding::Srgb,
-            Some("linear") => Encoding::Linear,
-            _ => Encoding::Auto,
-        };
-        let path = input.params.text("file").unwrap_or_default();
-        let span = input.params.span("file");
-        let from = span.is_some().then_some(span.source);
-        let folder = match input.folder {
-            Some(folder) => Folder::Path(folder.to_string()),
-            None => Folder::OfSource(from.map_or(u32::MAX, |source| source.0)),
-        };
-        let key = (folder, path.to_string(), encoding);
-        if let Some(texels) = self.0.get(&key) {
-            return Ok(texels.clone());
+        let finer = self.texels.level(below).bilinear(self.wrap, uv);
+        let part = (level - level.floor()) as f32;
+        if part == 0.0 {
+            return finer;
         }
-        let read = match input.folder {
-            Some("") => input.assets.bytes(None, path),
-            Some(folder) => input.assets.bytes(None, &format!("{folder}/{path}")),
-            None => input.assets.bytes(from, path),
-        };
-        let bytes = read.map_err(|error| if error.labels.is_empty() { error.at(span, "named here") } else { error })?;
-        let ending = path.rsplit_once('.').map(|(_, ending)| ending);
-        let image = decode(&bytes, ending).map_err(|error| unreadable(path, span, &error))?;
-        let texels = Arc::new(Texels::new(image, encoding));
-        self.0.insert(key, texels.clone());
-        Ok(texels)
+        lerp(finer, self.texels.level(below + 1).bilinear(self.wrap, uv), part)
     }
-}
-
-/// The picture that the parameters `file` and `encoding` name.
-pub fn read_picture(params: &Params, assets: &dyn Assets) -> Result<Picture, Diagnostic> {
-    let input = TextureInput { params: *params, names: &TextureNames::default(), assets, folder: None };
-    ImageFiles::default().read(&input).map(|texels| Picture::from(&*texels))
-}
-
-fn unreadable(path: &str, span: Span, error: &kirkas_images::ImageError) -> Diagnostic {
-    let text = error.to_string();
-    // Errors of pictures say the problem, then the cure.
-    let (problem, cure) = text.split_once("; ").unwrap_or((&text, "give another picture"));
-    Diagnostic::error("bad-image", format!("the picture `{path}` cannot be read: {problem}"))
-        .at(span, "this picture")
-        .help(cure)
 }

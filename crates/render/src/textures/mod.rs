@@ -5,24 +5,33 @@
 //! is used as a mask (the alpha channel of an image that has one, else the mean of the colour).
 
 mod checker;
+mod footprint;
+mod fractal;
 mod image;
+mod image_files;
+mod mapping;
 mod marble;
 mod noise;
 pub(crate) mod perlin;
 mod references;
+mod taps;
+mod texels;
 mod wood;
 
-pub use image::{Picture, read_picture};
+pub use footprint::{Patch, RayCone, SurfacePatch};
+pub use image_files::{Picture, PictureNote, read_picture};
 pub use references::{ColorSource, NumberSource, TextureNames};
 
 use checker::Checker;
-use image::{Image, ImageFiles};
+use image::Image;
+use image_files::ImageFiles;
 use kirkas_geometry::{DAffine3, DVec3};
 use kirkas_scene::spec::ANY;
 use kirkas_scene::transforms::read_transform;
 use kirkas_scene::{
     Assets, Catalog, Description, Diagnostic, Entity, Fallback, Kind, ParamSpec, ParamType, Params, TypeSpec,
 };
+use mapping::Mapping;
 use marble::Marble;
 use noise::Noise;
 use wood::Wood;
@@ -36,6 +45,22 @@ pub struct TexturePoint {
     pub object_position: DVec3,
     /// In world space, for solid textures with `space = "world"`.
     pub world_position: DVec3,
+    /// What is around it.
+    pub patch: Patch,
+}
+
+impl TexturePoint {
+    /// A point that is asked for itself alone.
+    pub const fn at(uv: [f32; 2], object_position: DVec3, world_position: DVec3) -> Self {
+        TexturePoint { uv, object_position, world_position, patch: Patch::POINT }
+    }
+
+    /// The same point, whatever its sample stands for.
+    pub fn alone(mut self) -> Self {
+        let Patch { object_axes, world_axes, uv_axes, .. } = Patch::POINT;
+        self.patch = Patch { object_axes, world_axes, uv_axes, ..self.patch };
+        self
+    }
 }
 
 /// Every type of texture.
@@ -77,13 +102,18 @@ struct Placed {
     /// `None` for the identity.
     texture_from_space: Option<DAffine3>,
     is_in_world: bool,
+    mapping: Mapping,
 }
 
 /// A [`TexturePoint`] as the pattern sees it.
 #[derive(Clone, Copy, Debug)]
 struct PatternPoint<'a> {
     uv: [f64; 2],
+    /// What one sample covers, in steps of `uv`.
+    uv_axes: [[f64; 2]; 2],
     position: DVec3,
+    /// The same in steps of `position`.
+    axes: [DVec3; 2],
     /// For the textures that this one is made of.
     original: &'a TexturePoint,
 }
@@ -148,6 +178,24 @@ impl Textures {
         }
     }
 
+    /// True when some texture looks at more of the surface than the point, were it but that.
+    pub fn looks_around(&self) -> bool {
+        self.placed.iter().any(|p| p.mapping.needs_normal())
+    }
+
+    /// True when some texture is filtered over what a sample stands for.
+    pub fn filters(&self) -> bool {
+        self.placed.iter().any(|p| match &p.texture {
+            Texture::Image(image) => image.filters(),
+            _ => true,
+        })
+    }
+
+    /// The pictures that were read, and how their numbers were understood.
+    pub fn pictures(&self) -> Vec<PictureNote> {
+        self.files.notes()
+    }
+
     fn lookup(&self, source: ColorSource, point: &TexturePoint) -> [f32; 4] {
         let number = match source {
             ColorSource::Constant(c) => return [c[0], c[1], c[2], mean(c)],
@@ -155,14 +203,7 @@ impl Textures {
         };
         // Numbers come from `TextureNames` of this table; any other is seen as black.
         let Some(placed) = self.placed.get(number as usize) else { return [0.0; 4] };
-        let at = placed.pattern_point(point);
-        match &placed.texture {
-            Texture::Checker(t) => t.eval(self, &at),
-            Texture::Image(t) => t.eval(&at),
-            Texture::Noise(t) => t.eval(self, &at),
-            Texture::Marble(t) => t.eval(self, &at),
-            Texture::Wood(t) => t.eval(self, &at),
-        }
+        placed.lookup(self, point)
     }
 
     /// `a` where `weight_of_a` is 1, `b` where it is 0.
@@ -209,18 +250,23 @@ impl Placed {
         let transform = input.params.entity.params.get("transform").map(read_transform).transpose()?;
         let texture_from_space = transform.filter(|m| *m != DAffine3::IDENTITY).map(|m| m.inverse());
         let is_in_world = input.params.text("space") == Some("world");
-        Ok(Placed { texture, texture_from_space, is_in_world })
+        Ok(Placed { texture, texture_from_space, is_in_world, mapping: Mapping::compile(&input.params) })
     }
 
-    fn pattern_point<'a>(&self, point: &'a TexturePoint) -> PatternPoint<'a> {
-        let position = if self.is_in_world { point.world_position } else { point.object_position };
-        let uv = point.uv.map(f64::from);
-        match &self.texture_from_space {
-            None => PatternPoint { uv, position, original: point },
-            Some(m) => {
-                let flat = m.transform_point3(DVec3::new(uv[0], uv[1], 0.0));
-                PatternPoint { uv: [flat.x, flat.y], position: m.transform_point3(position), original: point }
-            }
+    fn lookup(&self, textures: &Textures, point: &TexturePoint) -> [f32; 4] {
+        if self.mapping == Mapping::Triplanar {
+            return self.blend_sides(textures, point);
+        }
+        self.eval(textures, &self.pattern_point(point))
+    }
+
+    fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
+        match &self.texture {
+            Texture::Checker(t) => t.eval(textures, at),
+            Texture::Image(t) => t.eval(at),
+            Texture::Noise(t) => t.eval(textures, at),
+            Texture::Marble(t) => t.eval(textures, at),
+            Texture::Wood(t) => t.eval(textures, at),
         }
     }
 }

@@ -5,7 +5,11 @@
 //! ## Parameters
 //!
 //! - `a`, `b` (colour or texture, default black and white): the two that are mixed; `a` where the noise is high.
-//! - `octaves` (whole number, default 1): layers, each twice as fine and half as strong.
+//! - `octaves` (whole number, default 1): layers, each finer and weaker than the one before.
+//! - `style` (`fractal`, `turbulence`; default `fractal`): layers as they are, or without their signs, which makes creases.
+//! - `lacunarity` (number, default 2): how much finer each layer is.
+//! - `gain` (number, default 0.5): how strong each layer is beside the one before.
+//! - `mapping` (`solid`, `uv` and the projections of `image`; default `solid`): through space, or laid on the surface.
 //! - and those of all textures: `transform` (scale it to make the blotches larger), `space`.
 //!
 //! ## Example
@@ -21,49 +25,58 @@
 //!
 //! ## Limits
 //!
-//! Blotches are about one unit apart; the pattern repeats after 256 units. Weights beyond 0 and 1 are cut off.
+//! Blotches are about one unit apart; the pattern repeats after 256 units. Weights beyond 0 and 1 are cut off. Layers finer than
+//! what a sample covers fade into their mean.
 //!
 //! ## References
 //!
-//! `N(p) = noise(p) + noise(2 p) / 2 + noise(4 p) / 4 + ...`, weight of `a`: `N + 1/2`. As in MIT 6.837 (2004),
+//! `N(p) = noise(p) + gain noise(lacunarity p) + gain^2 noise(lacunarity^2 p) + ...`, weight of `a`: `N + 1/2`, for turbulence
+//! `N` of the layers' absolute values. As in MIT 6.837 (2004),
 //! assignment 6, with the noise of K. Perlin: "Improving Noise", 2002, <https://doi.org/10.1145/566654.566636>.
 
-use super::perlin::turbulence;
-use super::{ColorSource, PatternPoint, TextureInput, Textures};
+use super::fractal::{Fractal, GAIN, LACUNARITY, OCTAVES, STYLE};
+use super::{ColorSource, PatternPoint, TextureInput, Textures, mapping};
 use kirkas_scene::{Kind, ParamSpec, TypeSpec};
 
 /// The row `a` of the mixing textures.
 pub(super) const A: ParamSpec = ParamSpec::reflectance("a", [0.0; 3], "the one of the two that are mixed");
 /// The row `b`.
 pub(super) const B: ParamSpec = ParamSpec::reflectance("b", [1.0; 3], "the other");
-/// The most octaves: beyond, a layer is finer than any pixel and weaker than any step of colour.
-pub(super) const OCTAVES: (f64, f64) = (0.0, 32.0);
 
 /// Its table.
 pub const SPEC: TypeSpec = TypeSpec {
     kind: Kind::Texture,
     name: "noise",
     doc: "Smooth random blotches in space.",
-    params: &[A, B, ParamSpec::integer("octaves", 1, OCTAVES, "layers, each twice as fine and half as strong")],
+    params: &[
+        A,
+        B,
+        ParamSpec::integer("octaves", 1, OCTAVES, "layers, each finer and weaker than the one before"),
+        STYLE,
+        LACUNARITY,
+        GAIN,
+        mapping::SOLID_FIRST,
+    ],
 };
 
 #[derive(Clone, Debug)]
 pub(super) struct Noise {
     sources: [ColorSource; 2],
-    octaves: u32,
+    fractal: Fractal,
+    /// Added to the noise.
+    middle: f64,
 }
 
 impl Noise {
     pub(super) fn compile(input: &TextureInput) -> Self {
-        Noise { sources: input.a_and_b(), octaves: octaves(input) }
+        // Without signs it is no longer about 0.
+        let middle = if input.params.text("style") == Some("turbulence") { 0.0 } else { 0.5 };
+        Noise { sources: input.a_and_b(), fractal: Fractal::compile(input), middle }
     }
 
     pub(super) fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
-        let weight_of_a = (0.5 + turbulence(at.position, self.octaves)).clamp(0.0, 1.0);
+        let weight = |p, width| (self.middle + self.fractal.value(p, width)).clamp(0.0, 1.0);
+        let weight_of_a = at.solid_mean(self.fractal.finest(), weight);
         textures.mix(self.sources, weight_of_a, at.original)
     }
-}
-
-pub(super) fn octaves(input: &TextureInput) -> u32 {
-    input.params.integer("octaves").clamp(0, OCTAVES.1 as i64) as u32
 }

@@ -6,8 +6,10 @@
 //!
 //! - `a`, `b` (colour or texture, default black and white): the two that are mixed.
 //! - `octaves` (whole number, default 4): layers of the noise; 0 leaves the rings round.
+//! - `style`, `lacunarity`, `gain`: of these layers, as in `noise`.
 //! - `frequency` (number, radians per unit, default 1): how dense the rings are; one takes `2 pi / frequency` units.
 //! - `amplitude` (number, radians, default 1): how strongly the noise shakes them.
+//! - `mapping` (`solid`, `uv` and the projections of `image`; default `solid`): through space, or laid on the surface.
 //! - and those of all textures: `transform` (turn it to lay the log down), `space`.
 //!
 //! ## Example
@@ -52,8 +54,7 @@ impl Wood {
     }
 
     pub(super) fn eval(&self, textures: &Textures, at: &PatternPoint) -> [f32; 4] {
-        let p = at.position;
-        let radius = (p.x * p.x + p.z * p.z).sqrt();
-        textures.mix(self.sources, self.layers.weight_of_a(radius, at), at.original)
+        let weight_of_a = self.layers.weight_of_a(at, |p| (p.x * p.x + p.z * p.z).sqrt());
+        textures.mix(self.sources, weight_of_a, at.original)
     }
 }

@@ -36,5 +36,6 @@ mod shapes_errors;
 mod shapes_offsets;
 mod spectral_bins;
 mod support;
+mod texture_filtering;
 mod textures;
 mod whitted;

@@ -55,11 +55,11 @@ fn png(width: u32, height: u32, samples: &[u8]) -> Vec<u8> {
 }
 
 fn solid(x: f64, y: f64, z: f64) -> TexturePoint {
-    TexturePoint { uv: [0.0; 2], object_position: DVec3::new(x, y, z), world_position: DVec3::splat(1e3) }
+    TexturePoint::at([0.0; 2], DVec3::new(x, y, z), DVec3::splat(1e3))
 }
 
 fn flat(u: f32, v: f32) -> TexturePoint {
-    TexturePoint { uv: [u, v], object_position: DVec3::ZERO, world_position: DVec3::ZERO }
+    TexturePoint::at([u, v], DVec3::ZERO, DVec3::ZERO)
 }
 
 const T: ColorSource = ColorSource::Texture(0);
@@ -114,8 +114,7 @@ fn a_checker_has_scale_squares_per_unit_and_follows_its_transform() {
 
 #[test]
 fn a_solid_texture_is_fixed_to_the_object_or_to_the_world() {
-    let point =
-        TexturePoint { uv: [0.0; 2], object_position: DVec3::splat(0.5), world_position: DVec3::new(1.5, 0.5, 0.5) };
+    let point = TexturePoint::at([0.0; 2], DVec3::splat(0.5), DVec3::new(1.5, 0.5, 0.5));
     let solid = colors(0.0, 1.0).with("mapping", "solid");
     assert_eq!(red(&one("checker", solid.clone()), point), 0.0);
     assert_eq!(red(&one("checker", solid.with("space", "world")), point), 1.0);
