@@ -70,7 +70,7 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
         (None, true) => {
             let exact = points(input, "vertices");
             let data = inline_mesh(input, &exact)?;
-            build_mesh(Source::Inline { data, exact: &exact }, normals, input)
+            build_mesh(Source::Inline { data: Box::new(data), exact: &exact }, normals, input)
         }
         (Some(_), true) => Err(degenerate(input, "file", "it has both a file and vertices".into(), "one too many")
             .help("remove `file`, or remove `vertices`")),
@@ -95,7 +95,7 @@ pub(super) enum Source<'a> {
     /// A file, perhaps shared by several objects.
     File(Arc<MeshData>),
     /// The description: the vertices as they were written replace the rounded ones.
-    Inline { data: MeshData, exact: &'a [DVec3] },
+    Inline { data: Box<MeshData>, exact: &'a [DVec3] },
 }
 
 fn inline_mesh(input: &ShapeInput, vertices: &[DVec3]) -> Result<MeshData, Diagnostic> {
@@ -130,7 +130,7 @@ pub(super) fn build_mesh(source: Source, normals: Normals, input: &ShapeInput) -
     let (mut data, exact) = match source {
         // Whoever reads last keeps it: then nothing is copied.
         Source::File(data) => (Arc::try_unwrap(data).unwrap_or_else(|shared| (*shared).clone()), None),
-        Source::Inline { data, exact } => (data, Some(exact)),
+        Source::Inline { data, exact } => (*data, Some(exact)),
     };
     let broken = |what: String| {
         let name = if input.params.spec().name == "mesh" { "file" } else { "vertices" };

@@ -64,5 +64,5 @@ pub fn build(input: &ShapeInput) -> Result<Vec<Part>, Diagnostic> {
         triangles: vec![[0, 1, 2]],
         ..MeshData::default()
     };
-    build_mesh(Source::Inline { data, exact: &vertices }, Normals::Flat, input)
+    build_mesh(Source::Inline { data: Box::new(data), exact: &vertices }, Normals::Flat, input)
 }
