@@ -137,7 +137,7 @@ impl Matter {
             Some(inside) => Interface::between(lanes, &Index::Even(1.0), &inside.ior),
             None => Interface::VACUUM,
         };
-        let middle = TexturePoint { uv: [0.5, 0.5], object_position: DVec3::ZERO, world_position: DVec3::ZERO };
+        let middle = TexturePoint::at([0.5, 0.5], DVec3::ZERO, DVec3::ZERO);
         material.bsdf(lanes, &scene.textures, &middle, interface)
     }
 
