@@ -273,7 +273,13 @@ impl Builder<'_> {
         let Some(shape) = SHAPES.iter().find(|s| s.spec.name == p.spec().name) else { return Ok(()) };
         let span = p.entity.name.span;
         let source: Option<SourceId> = span.is_some().then_some(span.source);
-        let input = ShapeInput { params: p, assets: self.assets, source, part_from_object: context.matrix };
+        let input = ShapeInput {
+            params: p,
+            assets: self.assets,
+            textures: &self.textures,
+            source,
+            part_from_object: context.matrix,
+        };
         for part in (shape.build)(&input)? {
             let material = match (context.material, &part.own_material) {
                 (Some(m), _) => m,

@@ -2,7 +2,7 @@
 //!
 //! # What is read
 //!
-//! `v` (weights and vertex colours are dropped), `vt`, `vn`, `f` in all four forms with positive and negative indices,
+//! `v` (weights are dropped; colours behind the position, linear, are kept), `vt`, `vn`, `f` in all four forms with positive and negative indices,
 //! `usemtl`, `mtllib`. Groups, smoothing, lines, points, curves and surfaces are passed over; other words are warned of.
 //! Polygons are taken as planar; see [`polygon`] for how they are cut. Every different (position, texture coordinate,
 //! normal) becomes one vertex, in order of first use. Triangles without a defined material lie in no part of the mesh and

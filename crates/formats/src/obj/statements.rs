@@ -60,6 +60,8 @@ pub(super) struct Face {
 #[derive(Default)]
 pub(super) struct Statements<'a> {
     pub positions: Vec<Vec3>,
+    /// One per position, or none at all.
+    pub colors: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
     pub normals: Vec<Vec3>,
     /// Position, texture coordinate, normal; from 0.
@@ -90,7 +92,14 @@ pub(super) fn read<'a>(bytes: &'a [u8]) -> Result<Statements<'a>, Diagnostic> {
 
 fn read_statement<'a>(word: Word<'a>, lines: &mut Lines<'a>, all: &mut Statements<'a>) -> Result<(), Diagnostic> {
     match word.bytes {
-        b"v" => all.positions.push(Vec3::from_array(numbers(word, lines, 3)?)),
+        b"v" => {
+            all.positions.push(Vec3::from_array(numbers(word, lines, 3)?));
+            if let Some(color) = color(lines) {
+                // Positions before the first that has a colour are white, as those without one behind it.
+                all.colors.resize(all.positions.len() - 1, Vec3::ONE);
+                all.colors.push(color);
+            }
+        }
         b"vt" => {
             let [u, v, _] = numbers(word, lines, 1)?;
             all.uvs.push(Vec2::new(u, v));
@@ -129,6 +138,15 @@ fn read_statement<'a>(word: Word<'a>, lines: &mut Lines<'a>, all: &mut Statement
         }
     }
     Ok(())
+}
+
+/// The colour behind a position: three numbers (one more would be a weight alone).
+fn color(lines: &mut Lines) -> Option<Vec3> {
+    let mut color = [0.0; 3];
+    for lane in &mut color {
+        *lane = lines.word()?.number().filter(|c| c.is_finite())?.max(0.0);
+    }
+    Some(Vec3::from_array(color))
 }
 
 /// The next three numbers of the line, of which `least` must be there.

@@ -46,6 +46,9 @@ pub(super) fn unify(all: &Statements, defined: impl Fn(&str) -> bool) -> Result<
             }
             *slot = fresh;
             mesh.positions.push(all.positions[p as usize]);
+            if !all.colors.is_empty() {
+                mesh.colors.push(all.colors.get(p as usize).copied().unwrap_or(Vec3::ONE));
+            }
             if has_uvs {
                 mesh.uvs.push(all.uvs.get(t as usize).copied().unwrap_or(Vec2::ZERO));
             }

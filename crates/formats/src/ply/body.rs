@@ -11,6 +11,10 @@ pub(super) struct Body {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
+    /// As the file has them.
+    pub colors: Vec<Vec3>,
+    /// The largest number that a colour may be stored as; 0 where floats are stored.
+    pub color_codes: f32,
     pub triangles: Vec<[u32; 3]>,
     /// Faces with more than three corners.
     pub polygons: Vec<Polygon>,
@@ -83,7 +87,8 @@ fn read_fixed(binary: &mut Binary, element: &Element, layout: &[(usize, Ty, Role
                 3..6 => {
                     column(records, stride, offset, ty, binary.big, body.normals.iter_mut().map(|n| &mut n[slot - 3]))
                 }
-                _ => column(records, stride, offset, ty, binary.big, body.uvs.iter_mut().map(|t| &mut t[slot - 6])),
+                6..8 => column(records, stride, offset, ty, binary.big, body.uvs.iter_mut().map(|t| &mut t[slot - 6])),
+                _ => column(records, stride, offset, ty, binary.big, body.colors.iter_mut().map(|c| &mut c[slot - 8])),
             }
         }
     }
@@ -96,6 +101,12 @@ impl Body {
         self.positions = vec![Vec3::ZERO; count];
         self.normals = vec![Vec3::ZERO; if has(3..6) { count } else { 0 }];
         self.uvs = vec![Vec2::ZERO; if has(6..8) { count } else { 0 }];
+        self.colors = vec![Vec3::ZERO; if has(8..11) { count } else { 0 }];
+        self.color_codes = match element.scalar_of(Role::Slot(8)) {
+            Some(Ty::U8 | Ty::I8) => 255.0,
+            Some(Ty::U16 | Ty::I16) => 65_535.0,
+            _ => 0.0,
+        };
     }
 
     fn set(&mut self, vertex: usize, slot: usize, value: f32) {
@@ -106,9 +117,14 @@ impl Body {
                     n[slot - 3] = value;
                 }
             }
-            _ => {
+            6..8 => {
                 if let Some(t) = self.uvs.get_mut(vertex) {
                     t[slot - 6] = value;
+                }
+            }
+            _ => {
+                if let Some(c) = self.colors.get_mut(vertex) {
+                    c[slot - 8] = value;
                 }
             }
         }
@@ -350,7 +366,7 @@ fn walk(values: &mut impl Values, element: &Element, body: &mut Body) -> Result<
                     let v = values.next(ty).map_err(|s| stop(s, values))?;
                     if let Role::Slot(slot) = property.role {
                         body.set(row as usize, slot, v as f32);
-                        if !(v as f32).is_finite() && !(3..6).contains(&slot) {
+                        if !(v as f32).is_finite() && (0..3).contains(&slot) | (6..8).contains(&slot) {
                             return Err(not_finite(row, &values.place()).at(values.span(), "not finite"));
                         }
                     }

@@ -61,7 +61,7 @@ const TYPES: [(&str, Ty); 16] = [
 /// What a property is to us.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
-    /// Position (0, 1, 2), normal (3, 4, 5) or texture coordinate (6, 7) of a vertex.
+    /// Position (0, 1, 2), normal (3, 4, 5), texture coordinate (6, 7) or colour (8, 9, 10) of a vertex.
     Slot(usize),
     /// Corners of a face or of triangle strips.
     Corners,
@@ -102,6 +102,14 @@ pub(super) struct Element {
 }
 
 impl Element {
+    /// The stored type of the property with this role.
+    pub fn scalar_of(&self, role: Role) -> Option<Ty> {
+        self.properties.iter().find(|p| p.role == role).and_then(|p| match p.storage {
+            Storage::Scalar(ty) => Some(ty),
+            Storage::List(..) => None,
+        })
+    }
+
     /// The least number of bytes one takes in binary.
     pub fn least_size(&self) -> u64 {
         let size = |p: &Property| match p.storage {
@@ -282,6 +290,9 @@ fn read_property(words: &Words, span: Span, element: &Element) -> Result<Propert
         (Kind::Vertex, Storage::Scalar(_), "nz") => Role::Slot(5),
         (Kind::Vertex, Storage::Scalar(_), "u" | "s" | "texture_u" | "texture_s") => Role::Slot(6),
         (Kind::Vertex, Storage::Scalar(_), "v" | "t" | "texture_v" | "texture_t") => Role::Slot(7),
+        (Kind::Vertex, Storage::Scalar(_), "red" | "r" | "diffuse_red") => Role::Slot(8),
+        (Kind::Vertex, Storage::Scalar(_), "green" | "g" | "diffuse_green") => Role::Slot(9),
+        (Kind::Vertex, Storage::Scalar(_), "blue" | "b" | "diffuse_blue") => Role::Slot(10),
         (Kind::Face | Kind::Strips, Storage::List(_, item), "vertex_indices" | "vertex_index") => {
             if !item.is_integer() {
                 return Err(bad_line(place, "vertex numbers must be of a whole-number type"));

@@ -3,7 +3,8 @@
 //! # What is read
 //!
 //! ASCII, binary little-endian and big-endian files of version 1.0. Of `vertex`: `x y z`, `nx ny nz`, and texture
-//! coordinates named `u v`, `s t`, `texture_u texture_v` or `texture_s texture_t`, of any type and in any order. Of `face`:
+//! coordinates named `u v`, `s t`, `texture_u texture_v` or `texture_s texture_t`, of any type and in any order; `red green blue`,
+//! sRGB codes if they are whole numbers, else linear. Of `face`:
 //! the list `vertex_indices` or `vertex_index`; polygons are cut like those of OBJ ([`crate::obj::polygon`]). Of `tristrips`
 //! (Stanford's strips, ended by -1) the same. Everything else is skipped. Vertices keep their order.
 //!
@@ -24,6 +25,8 @@ use crate::Failure;
 use crate::obj::{polygon, printable};
 use body::Body;
 use header::{Format, Kind};
+use kirkas_geometry::Vec3;
+use kirkas_geometry::elementary::pow;
 use kirkas_scene::{Diagnostic, MeshData, Sources};
 
 /// Read the PLY file `bytes`, known to the user as `path`.
@@ -98,7 +101,8 @@ fn check_values(body: &mut Body) -> Result<(), Diagnostic> {
 }
 
 fn to_mesh(body: Body) -> MeshData {
-    let Body { positions, normals, uvs, triangles, polygons, polygon_corners, .. } = body;
+    let Body { positions, normals, uvs, mut colors, color_codes, triangles, polygons, polygon_corners, .. } = body;
+    colors.iter_mut().for_each(|c| *c = linear_color(*c, color_codes));
     let triangles = if polygons.is_empty() {
         triangles
     } else {
@@ -115,5 +119,21 @@ fn to_mesh(body: Body) -> MeshData {
         all.extend_from_slice(&triangles[done..]);
         all
     };
-    MeshData { positions, normals, uvs, triangles, ..MeshData::default() }
+    MeshData { positions, normals, uvs, colors, triangles, ..MeshData::default() }
+}
+
+/// IEC 61966-2-1.
+fn srgb_to_linear(coded: f32) -> f32 {
+    let c = f64::from(coded);
+    (if c <= 0.04045 { c / 12.92 } else { pow((c + 0.055) / 1.055, 2.4) }) as f32
+}
+
+/// Whole numbers are codes of sRGB, floats are linear; what is no number or negative is 0.
+fn linear_color(stored: Vec3, codes: f32) -> Vec3 {
+    let lane = |c: f32| match codes {
+        0.0 => c,
+        most => srgb_to_linear(c / most),
+    };
+    let sound = |c: f32| if c.is_finite() { c.max(0.0) } else { 0.0 };
+    Vec3::from_array(stored.to_array().map(|c| sound(lane(c))))
 }

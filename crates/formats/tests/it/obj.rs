@@ -294,3 +294,13 @@ fn tobj_reads_the_same_triangles() {
     }
     assert!(count >= 4, "only {count} meshes in {data:?}");
 }
+
+#[test]
+fn colours_behind_positions_come_along_and_weights_do_not() {
+    let mesh = read("v 0 0 0 0.5 1 2\nv 1 0 0 0 0 0\nv 0 1 0 1 0 0\nv 9 9 9 1 1 1\nvt 0 0\nf 3/1 1/1 2/1\n");
+    assert_eq!(mesh.colors, [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, 1.0, 2.0), Vec3::ZERO]);
+    assert!(read("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nf 1 2 3\n").colors.is_empty());
+    // Those without a colour are white.
+    let mesh = read("v 0 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(mesh.colors, [Vec3::ONE, Vec3::new(0.0, 1.0, 0.0), Vec3::ONE]);
+}

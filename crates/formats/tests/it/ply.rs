@@ -239,3 +239,22 @@ fn the_stanford_bunny_is_read_whole() {
     let mesh = read(&std::fs::read(path).unwrap(), "bun_zipper.ply").unwrap_or_else(|f| panic!("{}", failure(&f)));
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (35947, 69451));
 }
+
+#[test]
+fn colours_of_vertices_are_linear_whether_codes_or_floats() {
+    let file = |types: &str, values: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property {types} red\nproperty {types} green\nproperty {types} blue\nelement face 1\n\
+             property list uchar int vertex_indices\nend_header\n0 0 0 {values}\n1 0 0 {values}\n0 1 0 {values}\n3 0 1 2\n"
+        )
+    };
+    let codes = read(file("uchar", "0 128 255").as_bytes(), "m.ply").expect("a sound file");
+    assert_eq!(codes.colors.len(), 3);
+    assert!((codes.colors[1] - Vec3::new(0.0, 0.215_860_5, 1.0)).length() < 1e-6, "{}", codes.colors[1]);
+    let floats = read(file("float", "0.25 2 -1").as_bytes(), "m.ply").expect("a sound file");
+    assert_eq!(floats.colors[2], Vec3::new(0.25, 2.0, 0.0));
+    // Two of three are none.
+    let two = file("float", "1 1 1").replace("property float blue\n", "property float other\n");
+    assert!(read(two.as_bytes(), "m.ply").expect("a sound file").colors.is_empty());
+}

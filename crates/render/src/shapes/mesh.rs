@@ -10,6 +10,9 @@
 //! - `uvs` (numbers, two per vertex): texture coordinates; with `vertices`.
 //! - `normals` (`"file"`, `"smooth"` or `"flat"`, default `"file"`): shading normals: those of the file, if it has any, else
 //!   flat; the mean of the faces around each vertex; or none.
+//! - `subdivisions` (whole number, 0 to 10, default 0): how often each triangle is cut into four.
+//! - `displacement` (number or texture): moves the vertices along their normals, by `displacement_scale` (units of the mesh,
+//!   default 1) times what it says above `displacement_middle` (default 0). Shading normals are then computed anew.
 //!
 //! ## Example
 //! ```toml
@@ -21,13 +24,15 @@
 //! ```
 //!
 //! ## Limits
-//! Vertices are rounded to f32 (about 7 digits) after the transform. Triangles without area are never hit.
+//! Vertices are rounded to f32 (about 7 digits) after the transform. Triangles without area are never hit. A displacement shows no
+//! detail finer than the triangles: picture and subdivisions should match. Other shapes are not displaced: give them as a mesh.
 //!
 //! ## References
 //! Smooth normals: Max, "Weights for Computing Vertex Normals from Facet Normals", 1999. Intersection: Woop, Benthin & Wald,
 //! "Watertight Ray/Triangle Intersection", 2013.
 
 use super::analytic::degenerate;
+use super::displace;
 use super::triangles::{PlacedMesh, TriangleSurface};
 use super::{Part, ShapeInput};
 use kirkas_geometry::hash::mix64;
@@ -51,6 +56,10 @@ pub const SPEC: TypeSpec = TypeSpec {
             .range((0.0, u32::MAX as f64)),
         ParamSpec::new("uvs", ParamType::Numbers, Fallback::Absent, "Texture coordinates, two per vertex."),
         ParamSpec::choice("normals", &["file", "smooth", "flat"], "Which shading normals to use."),
+        displace::SUBDIVISIONS,
+        displace::DISPLACEMENT,
+        displace::SCALE,
+        displace::MIDDLE,
     ],
 };
 
@@ -143,6 +152,15 @@ pub(super) fn build_mesh(source: Source, normals: Normals, input: &ShapeInput) -
 
     // Place the vertices.
     let is_identity = *m == DAffine3::IDENTITY;
+    let is_mesh = input.params.spec().name == "mesh";
+    let is_cut = is_mesh && (input.params.has("displacement") || input.params.integer("subdivisions") > 0);
+    let (mut normals, mut exact) = (normals, exact);
+    if is_cut {
+        exact = None;
+        if displace::displace(&mut data, input)? && normals == Normals::File {
+            normals = Normals::Smooth;
+        }
+    }
     match exact {
         Some(exact) => data.positions.iter_mut().zip(exact).for_each(|(p, e)| *p = m.transform_point3(*e).as_vec3()),
         None if !is_identity => {
@@ -212,18 +230,19 @@ fn runs(parts: &[MeshPart], count: usize) -> Vec<(core::ops::Range<usize>, Optio
     runs
 }
 
+/// For each vertex the first one at the same place.
+pub(super) fn homes(positions: &[Vec3]) -> Vec<u32> {
+    let mut seen = HashMap::with_capacity_and_hasher(positions.len(), BuildHasherDefault::<Mix>::default());
+    // Adding zero makes one of both zeros. Only looked up, never walked: the order of the map does not matter.
+    let key = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
+    positions.iter().enumerate().map(|(i, p)| *seen.entry(key(p)).or_insert(i as u32)).collect()
+}
+
 /// The mean of the normals around each vertex, weighted so that it is exact on a sphere (Max 1999). Vertices at the same
 /// place count as one, although files split them where texture coordinates or normals differ.
-fn smooth_normals(data: &MeshData) -> Vec<Vec3> {
+pub(super) fn smooth_normals(data: &MeshData) -> Vec<Vec3> {
     let split = !data.uvs.is_empty() || !data.normals.is_empty();
-    let first: Vec<u32> = if split {
-        let mut seen = HashMap::with_capacity_and_hasher(data.positions.len(), BuildHasherDefault::<Mix>::default());
-        // Adding zero makes one of both zeros. Only looked up, never walked: the order of the map does not matter.
-        let key = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
-        data.positions.iter().enumerate().map(|(i, p)| *seen.entry(key(p)).or_insert(i as u32)).collect()
-    } else {
-        Vec::new()
-    };
+    let first: Vec<u32> = if split { homes(&data.positions) } else { Vec::new() };
     let home = |i: u32| if split { first[i as usize] } else { i } as usize;
     let mut sums = vec![DVec3::ZERO; data.positions.len()];
     for t in &data.triangles {

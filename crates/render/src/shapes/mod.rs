@@ -19,6 +19,7 @@ pub mod torus;
 pub mod triangle;
 
 mod analytic;
+mod displace;
 mod frustum;
 mod polynomial;
 mod quadratic;
@@ -26,7 +27,7 @@ mod spheres;
 mod triangles;
 
 use crate::lights::Cone;
-use crate::textures::SurfacePatch;
+use crate::textures::{SurfacePatch, Textures};
 use kirkas_accel as accel;
 use kirkas_geometry::{Bounds3, DAffine3, DMat3, DVec3, Ray};
 use kirkas_scene::{Assets, Diagnostic, Fallback, Kind, ParamSpec, ParamType, Params, SourceId, TypeSpec};
@@ -76,6 +77,8 @@ pub struct ShapeInput<'a> {
     pub params: Params<'a>,
     /// For meshes.
     pub assets: &'a dyn Assets,
+    /// For displacement.
+    pub textures: &'a Textures,
     /// The source that paths are relative to.
     pub source: Option<SourceId>,
     /// Object to part space.

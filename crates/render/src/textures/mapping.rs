@@ -39,6 +39,10 @@ pub(super) const SOLID_FIRST: ParamSpec =
 
 impl Mapping {
     pub(super) fn compile(params: &Params) -> Self {
+        // Some textures have no place in a pattern.
+        if !params.spec().params.iter().any(|row| row.name == "mapping") {
+            return Mapping::Uv;
+        }
         match params.text("mapping") {
             Some("solid") => Mapping::Solid,
             Some("planar") => Mapping::Planar,

@@ -4,9 +4,11 @@
 //! one flat table. A looked-up value has four lanes: linear Rec.709 and, last, the number that the texture means where it
 //! is used as a mask (the alpha channel of an image that has one, else the mean of the colour).
 
+mod brick;
 mod checker;
 mod footprint;
 mod fractal;
+mod gradient;
 mod image;
 mod image_files;
 mod mapping;
@@ -16,13 +18,16 @@ pub(crate) mod perlin;
 mod references;
 mod taps;
 mod texels;
+mod vertex_color;
 mod wood;
 
 pub use footprint::{Patch, RayCone, SurfacePatch};
 pub use image_files::{Picture, PictureNote, read_picture};
 pub use references::{ColorSource, NumberSource, TextureNames};
 
+use brick::Brick;
 use checker::Checker;
+use gradient::Gradient;
 use image::Image;
 use image_files::ImageFiles;
 use kirkas_geometry::{DAffine3, DVec3};
@@ -34,6 +39,7 @@ use kirkas_scene::{
 use mapping::Mapping;
 use marble::Marble;
 use noise::Noise;
+use vertex_color::VertexColor;
 use wood::Wood;
 
 /// Where a texture is asked.
@@ -64,7 +70,16 @@ impl TexturePoint {
 }
 
 /// Every type of texture.
-pub const TEXTURES: &[&TypeSpec] = &[&checker::SPEC, &image::SPEC, &noise::SPEC, &marble::SPEC, &wood::SPEC];
+pub const TEXTURES: &[&TypeSpec] = &[
+    &checker::SPEC,
+    &image::SPEC,
+    &noise::SPEC,
+    &marble::SPEC,
+    &wood::SPEC,
+    &gradient::SPEC,
+    &brick::SPEC,
+    &vertex_color::SPEC,
+];
 
 /// Rows that every texture takes.
 pub const COMMON: &[ParamSpec] = &[
@@ -86,6 +101,9 @@ enum Texture {
     Noise(Noise),
     Marble(Marble),
     Wood(Wood),
+    Gradient(Gradient),
+    Brick(Brick),
+    VertexColor(VertexColor),
 }
 
 /// All textures of a scene.
@@ -180,13 +198,14 @@ impl Textures {
 
     /// True when some texture looks at more of the surface than the point, were it but that.
     pub fn looks_around(&self) -> bool {
-        self.placed.iter().any(|p| p.mapping.needs_normal())
+        self.placed.iter().any(|p| p.mapping.needs_normal() || matches!(p.texture, Texture::VertexColor(_)))
     }
 
     /// True when some texture is filtered over what a sample stands for.
     pub fn filters(&self) -> bool {
         self.placed.iter().any(|p| match &p.texture {
             Texture::Image(image) => image.filters(),
+            Texture::VertexColor(_) => false,
             _ => true,
         })
     }
@@ -245,6 +264,9 @@ impl Placed {
             "noise" => Texture::Noise(Noise::compile(input)),
             "marble" => Texture::Marble(Marble::compile(input)),
             "wood" => Texture::Wood(Wood::compile(input)),
+            "gradient" => Texture::Gradient(Gradient::compile(input)),
+            "brick" => Texture::Brick(Brick::compile(input)),
+            "vertex_color" => Texture::VertexColor(VertexColor::compile(input)),
             _ => Texture::Checker(Checker::compile(input)),
         };
         let transform = input.params.entity.params.get("transform").map(read_transform).transpose()?;
@@ -267,6 +289,9 @@ impl Placed {
             Texture::Noise(t) => t.eval(textures, at),
             Texture::Marble(t) => t.eval(textures, at),
             Texture::Wood(t) => t.eval(textures, at),
+            Texture::Gradient(t) => t.eval(at),
+            Texture::Brick(t) => t.eval(textures, at),
+            Texture::VertexColor(t) => t.eval(textures, at),
         }
     }
 }

@@ -36,6 +36,8 @@ mod shapes_errors;
 mod shapes_offsets;
 mod spectral_bins;
 mod support;
+mod texture_displacement;
 mod texture_filtering;
+mod texture_kinds;
 mod textures;
 mod whitted;

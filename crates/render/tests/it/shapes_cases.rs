@@ -5,6 +5,7 @@ use kirkas_geometry::hash::mix64;
 use kirkas_geometry::transform::rotation;
 use kirkas_geometry::{DAffine3, DMat3, DVec3, Ray, Vec2, Vec3};
 use kirkas_render::shapes::{COMMON, Detail, Part, SHAPES, ShapeInput, SurfacePoint};
+use kirkas_render::textures::Textures;
 use kirkas_scene::{Assets, Catalog, Diagnostic, Entity, Kind, Map, MeshData, MeshPart, Node, Params, SourceId, Value};
 use std::sync::{Arc, Mutex};
 
@@ -112,7 +113,13 @@ pub fn catalog() -> Catalog {
 pub fn build(entity: &Entity, part_from_object: DAffine3) -> Result<Vec<Part>, Diagnostic> {
     let shape = SHAPES.iter().find(|s| s.spec.name == entity.type_name.text).expect("listed");
     let params = Params::new(entity, Kind::Object, &catalog()).expect("in the catalogue");
-    (shape.build)(&ShapeInput { params, assets: &Files, source: None, part_from_object })
+    (shape.build)(&ShapeInput {
+        params,
+        assets: &Files,
+        textures: &Textures::default(),
+        source: None,
+        part_from_object,
+    })
 }
 
 /// A meshes' library of one: a tetrahedron of two materials, with texture coordinates and its own normals.
