@@ -11,8 +11,9 @@
 //! - `normals` (`"file"`, `"smooth"` or `"flat"`, default `"file"`): shading normals: those of the file, if it has any, else
 //!   flat; the mean of the faces around each vertex; or none.
 //! - `subdivisions` (whole number, 0 to 10, default 0): how often each triangle is cut into four.
-//! - `displacement` (number or texture): moves the vertices along their normals, by `displacement_scale` (units of the mesh,
-//!   default 1) times what it says above `displacement_middle` (default 0). Shading normals are then computed anew.
+//! - `displacement` (number or texture): moves the vertices along their normals; shading normals are then computed anew.
+//! - `displacement_scale` (number, units of the mesh, default 1): how far a displacement of 1 moves.
+//! - `displacement_middle` (number, default 0): the displacement that leaves a vertex where it is.
 //!
 //! ## Example
 //! ```toml

@@ -87,7 +87,7 @@ pub fn pixels(film: &Film) -> Vec<Rgb> {
 /// `body` with a camera of one pixel at `from`, whose every ray runs exactly towards `to`.
 pub fn one_pixel(body: &str, from: Rgb, to: Rgb, samples: u32) -> String {
     format!(
-        "{body}\n[film]\nwidth = 1\nheight = 1\nfilter = \"point\"\n[sampler]\nsamples = {samples}\n\
+        "{body}\n[film]\nwidth = 1\nheight = 1\nfilter = \"point\"\ntexture_footprint = 0\n[sampler]\nsamples = {samples}\n\
          [cameras.eye]\ntype = \"perspective\"\nposition = {from:?}\nlook_at = {to:?}\nfov = 10\n"
     )
 }

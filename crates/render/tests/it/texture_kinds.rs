@@ -158,6 +158,10 @@ fn every_number_and_colour_of_every_material_takes_a_texture_or_has_a_reason() {
             .iter()
             .filter(|row| row.fallback == Fallback::Required)
             .map(|row| match row.ty {
+                ParamType::Reference(_) => format!("{} = \"base\"\n", row.name),
+                ParamType::References(_) => format!("{} = [\"base\"]\n", row.name),
+                ParamType::Numbers => format!("{} = [-1, -1, 1, 10]\n", row.name),
+                ParamType::ColorTexture | ParamType::NumberTexture => format!("{} = \"t\"\n", row.name),
                 ParamType::Path => format!("{} = \"none.binary\"\n", row.name),
                 ParamType::Index => format!("{} = 1.5\n", row.name),
                 _ => String::new(),
@@ -172,9 +176,10 @@ fn every_number_and_colour_of_every_material_takes_a_texture_or_has_a_reason() {
             if !is_texture || required.contains("none.binary") {
                 continue;
             }
+            let required = required.replace(&format!("{} = \"t\"\n", row.name), "");
             let toml = format!(
                 "{EYE}[textures.t]\ntype = \"checker\"\na = 0.2\nb = 0.9\n[materials.m]\ntype = \"{}\"\n{required}{} = \"t\"\n\
-                 [objects.o]\ntype = \"sphere\"\nmaterial = \"m\"\n",
+                 [materials.base]\ntype = \"lambert\"\n[objects.o]\ntype = \"sphere\"\nmaterial = \"m\"\n",
                 spec.name, row.name
             );
             let p = prepared_with(&toml, &[], &Options::default());
