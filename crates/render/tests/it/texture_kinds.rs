@@ -160,7 +160,7 @@ fn every_number_and_colour_of_every_material_takes_a_texture_or_has_a_reason() {
             .map(|row| match row.ty {
                 ParamType::Reference(_) => format!("{} = \"base\"\n", row.name),
                 ParamType::References(_) => format!("{} = [\"base\"]\n", row.name),
-                ParamType::Numbers => format!("{} = [-1, -1, 1, 10]\n", row.name),
+                ParamType::Numbers => format!("{} = [-1, -1, 1, 10, 0.5, 0.5, 0.5]\n", row.name),
                 ParamType::ColorTexture | ParamType::NumberTexture => format!("{} = \"t\"\n", row.name),
                 ParamType::Path => format!("{} = \"none.binary\"\n", row.name),
                 ParamType::Index => format!("{} = 1.5\n", row.name),
