@@ -171,6 +171,7 @@ const PICTURES: &[Picture] = &[
     matter("velvet", &["--size", "540x142", "--spp", "96"]),
     matter("car_paint", &["--size", "540x142", "--spp", "96"]),
     matter("designer", &["--size", "540x195", "--spp", "128"]),
+    matter("layers", &["--size", "540x225", "--spp", "64"]),
     matter("measured", &["--size", "480x280", "--spp", "96"]),
 ];
 

@@ -57,6 +57,7 @@ mod boundary;
 mod coat;
 mod conductor_body;
 mod film;
+mod glass_losses;
 mod lobes;
 mod mirror_body;
 mod mixture;

@@ -19,6 +19,7 @@
 //! | `roughness` | number or texture, 0..1 | | 0.2 | alpha: about the RMS slope of the facets; 0.05 polished, 0.5 dull |
 //! | `anisotropy` | number or texture, -1..1 | | 0 | `alpha_u = roughness (1 + anisotropy)` along the texture's u, `alpha_v = roughness (1 - anisotropy)` |
 //! | `distribution` | `ggx`, `beckmann` | | `ggx` | slopes with long tails, or Gaussian ones |
+//! | `compensation` | true or false | | false | gives back the light that bounces among the facets |
 //!
 //! ## Example
 //!
@@ -31,7 +32,9 @@
 //!
 //! ## Limits
 //!
-//! Light that would bounce among the facets is lost. Roughness below 0.001 acts as 0.001, and indices nearer than 0.1 % as
+//! Without `compensation` light that would bounce among the facets is lost. With it white glass of round facets stands a furnace within
+//! 0.5 %; stretched facets are taken for round ones, a film's colour is left out, and under another medium than vacuum, or with
+//! `fresnel = "constant"`, nothing is given back. Roughness below 0.001 acts as 0.001, and indices nearer than 0.1 % as
 //! 0.1 % apart. Radiance over n^2, and `constant`, as in `dielectric`. Transmission uses the separable G of Walter et al.
 //!
 //! With a film, colour is exact in spectral renders; in RGB it is that of 27 bands of the spectrum under D65. See `thin_film`.
@@ -39,18 +42,21 @@
 //! ## References
 //!
 //! B. Walter, S. R. Marschner, H. Li & K. E. Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007,
-//! equations 16, 17, 20, 21. See `microfacet` for the distributions, G and sampling.
+//! equations 16, 17, 20, 21. Compensation: C. Kulla & A. Conty, SIGGRAPH 2017 courses. See `microfacet` for the distributions, G and sampling.
 
 use super::boundary::{Fresnel, Split, pick, square};
 use super::dielectric::{ABSORPTION, FRESNEL, IOR, PRIORITY, REFLECTANCE_ROW, TRANSMITTANCE_ROW, read_medium};
 use super::film::{FILM_IOR, FILM_THICKNESS, FilmKind};
+use super::glass_losses::{GlassLosses, GlassLossesAt};
 use super::hull::INTERIOR;
-use super::roughness::{ANISOTROPY, DISTRIBUTION, Kind as Facetting};
+use super::roughness::{ANISOTROPY, COMPENSATION, DISTRIBUTION, Kind as Facetting};
 use super::{BsdfSample, Interface, Lobe, LobeSet, Mode, Prepare, Scatter, roughness, slot};
 use crate::fresnel::{reflect, refract};
 use crate::microfacet::Facets;
 use crate::{Lanes, Light, Medium, Palette};
+use core::f32::consts::PI;
 use kirkas_geometry::Vec3;
+use kirkas_geometry::warp::square_to_cosine_hemisphere;
 use kirkas_scene::{Kind, Params, TypeSpec};
 
 /// The table.
@@ -71,6 +77,7 @@ pub const SPEC: TypeSpec = TypeSpec {
         INTERIOR,
         FILM_THICKNESS,
         FILM_IOR,
+        COMPENSATION,
     ],
 };
 const REFLECTANCE: usize = slot(SPEC.params, "reflectance");
@@ -89,6 +96,7 @@ pub struct Prepared {
     film: FilmKind,
     facetting: Facetting,
     medium: Medium,
+    losses: Option<&'static GlassLosses>,
 }
 
 /// At a point.
@@ -97,23 +105,27 @@ pub struct RoughDielectric {
     split: Split,
     facets: Facets,
     interface: Interface,
+    losses: Option<GlassLossesAt>,
 }
 
 impl Prepare for Prepared {
     type At = RoughDielectric;
     fn prepare(params: &Params, palette: &Palette) -> Self {
+        let (fresnel, facetting) = (Fresnel::of(params.text("fresnel")), Facetting::read(params));
+        let medium = read_medium(params, palette);
+        let ior = apart(1.0, medium.ior.at_d_line());
         Prepared {
-            fresnel: Fresnel::of(params.text("fresnel")),
+            losses: (params.bool("compensation") && fresnel != Fresnel::Constant)
+                .then(|| GlassLosses::of(facetting.distribution(), ior)),
             film: FilmKind::read(params),
-            facetting: Facetting::read(params),
-            medium: read_medium(params, palette),
+            fresnel,
+            facetting,
+            medium,
         }
     }
     fn at(&self, lanes: &Lanes, slots: &[Light], mut interface: Interface) -> RoughDielectric {
-        let (above, below) = (interface.eta_above, interface.eta_below);
-        if (below / above - 1.0).abs() < LEAST_CONTRAST {
-            interface.eta_below = above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST };
-        }
+        interface.eta_below = apart(interface.eta_above, interface.eta_below);
+        let facets = self.facetting.facets(slots[ROUGHNESS], slots[STRETCH]);
         RoughDielectric {
             split: Split {
                 reflect: slots[REFLECTANCE],
@@ -121,12 +133,22 @@ impl Prepare for Prepared {
                 fresnel: self.fresnel,
                 film: self.film.at(lanes, slots[THICKNESS]),
             },
-            facets: self.facetting.facets(slots[ROUGHNESS], slots[STRETCH]),
+            losses: self.losses.and_then(|l| l.at(&facets, interface.eta_above, interface.eta_below)),
+            facets,
             interface,
         }
     }
     fn medium(&self) -> Option<&Medium> {
         Some(&self.medium)
+    }
+}
+
+/// The index below, moved away from the one above if it is too near.
+fn apart(above: f32, below: f32) -> f32 {
+    if (below / above - 1.0).abs() < LEAST_CONTRAST {
+        above * if below < above { 1.0 - LEAST_CONTRAST } else { 1.0 + LEAST_CONTRAST }
+    } else {
+        below
     }
 }
 
@@ -177,15 +199,9 @@ impl RoughDielectric {
         let keep = |lobe, w| if lobes.contains(lobe) { w } else { Light::BLACK };
         (keep(Lobe::GlossyReflection, r), keep(Lobe::GlossyTransmission, t))
     }
-}
 
-impl Scatter for RoughDielectric {
-    fn lobes(&self) -> LobeSet {
-        LobeSet::of(Lobe::GlossyReflection).when(!self.split.reflect.is_black())
-            | LobeSet::of(Lobe::GlossyTransmission).when(!self.split.transmit.is_black())
-    }
-
-    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
+    /// The value of single facets.
+    fn facet_value(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
         let Some(p) = self.passage(wo, wi) else { return Light::BLACK };
         let (r, t) = self.wanted(p.wo.dot(p.h), wo, lobes);
         let d = self.facets.d(p.h);
@@ -199,7 +215,7 @@ impl Scatter for RoughDielectric {
         power * self.interface.refracted_weight()
     }
 
-    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
+    fn facet_pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet) -> f32 {
         let Some(p) = self.passage(wo, wi) else { return 0.0 };
         let cos_o = p.wo.dot(p.h);
         let (r, t) = self.wanted(cos_o, wo, lobes);
@@ -213,24 +229,109 @@ impl Scatter for RoughDielectric {
         if chosen > 0.0 { chosen / (r + t) * self.facets.visible_normal_pdf(p.wo, p.h) * dh_dwi } else { 0.0 }
     }
 
+    /// What is given back along `wi`.
+    fn given_back(&self, losses: &GlassLossesAt, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return Light::BLACK;
+        }
+        let (side_o, side_i) = (side(wo), side(wi));
+        let f = losses.lobe((side_o, wo.z.abs()), (side_i, wi.z.abs()));
+        let (r, t) = losses.parts(side_o);
+        if side_o == side_i {
+            return if lobes.contains(Lobe::GlossyReflection) { self.split.reflect * (f * r) } else { Light::BLACK };
+        }
+        if !lobes.contains(Lobe::GlossyTransmission) {
+            return Light::BLACK;
+        }
+        let (eta_o, eta_i) = self.interface.seen_from(wo);
+        self.split.transmit
+            * (f * t * self.split.transmission_scale(eta_o, eta_i, mode))
+            * self.interface.refracted_weight()
+    }
+
+    /// The chances that a direction is drawn from what is given back, reflected and transmitted.
+    fn chances(&self, wo: Vec3, lobes: LobeSet) -> (f32, f32) {
+        let Some(losses) = &self.losses else { return (0.0, 0.0) };
+        let (r, t) = losses.parts(side(wo));
+        let keep = |lobe, w: f32, tint: Light| if lobes.contains(lobe) { w * tint.max_component() } else { 0.0 };
+        let r = keep(Lobe::GlossyReflection, r, self.split.reflect);
+        let t = keep(Lobe::GlossyTransmission, t, self.split.transmit);
+        if r + t > 0.0 {
+            let lost = losses.lost(side(wo), wo.z.abs());
+            (lost * r / (r + t), lost * t / (r + t))
+        } else {
+            (0.0, 0.0)
+        }
+    }
+}
+
+/// 0 above, 1 below.
+fn side(w: Vec3) -> usize {
+    usize::from(w.z < 0.0)
+}
+
+impl Scatter for RoughDielectric {
+    fn lobes(&self) -> LobeSet {
+        LobeSet::of(Lobe::GlossyReflection).when(!self.split.reflect.is_black())
+            | LobeSet::of(Lobe::GlossyTransmission).when(!self.split.transmit.is_black())
+    }
+
+    fn eval(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, mode: Mode) -> Light {
+        let single = self.facet_value(wo, wi, lobes, mode);
+        match &self.losses {
+            Some(losses) => single + self.given_back(losses, wo, wi, lobes, mode),
+            None => single,
+        }
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, lobes: LobeSet, _: Mode) -> f32 {
+        let single = self.facet_pdf(wo, wi, lobes);
+        if self.losses.is_none() || wo.z == 0.0 {
+            return single;
+        }
+        let (r, t) = self.chances(wo, lobes);
+        let chance = if side(wo) == side(wi) { r } else { t };
+        (1.0 - r - t) * single + chance * wi.z.abs() / PI
+    }
+
     fn sample(&self, wo: Vec3, u_lobe: f32, u: (f32, f32), lobes: LobeSet, mode: Mode) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }
-        // Work above, turn back at the end.
         let (eta_o, eta_i) = self.interface.seen_from(wo);
         let turn = |v: Vec3| if wo.z < 0.0 { Vec3::new(v.x, v.y, -v.z) } else { v };
-        let up = turn(wo);
-        let h = self.facets.sample_visible_normal(up, u);
-        let (r, t) = self.wanted(up.dot(h), wo, lobes);
-        let (wi, lobe, eta) = match pick([r.max_component(), t.max_component()], u_lobe)?.0 {
-            0 => (reflect(up, h), Lobe::GlossyReflection, 1.0),
-            _ => (refract(up, h, eta_o, eta_i)?, Lobe::GlossyTransmission, eta_i / eta_o),
+
+        // Choose between single facets and what is given back. One lobe has no number of its own: it shares the direction's.
+        let (mut u_lobe, mut u) = (u_lobe, u);
+        let (given_r, given_t) = self.chances(wo, lobes);
+        let given = given_r + given_t;
+        let mut is_given = false;
+        if given > 0.0 {
+            let x = if (self.lobes() & lobes).is_single() { &mut u.0 } else { &mut u_lobe };
+            is_given = *x < given;
+            *x = if is_given { *x / given } else { (*x - given) / (1.0 - given) }.min(1.0 - f32::EPSILON / 2.0);
+        }
+        let (wi, lobe) = if is_given {
+            let up = square_to_cosine_hemisphere(u);
+            match pick([given_r, given_t], u_lobe)?.0 {
+                0 => (up, Lobe::GlossyReflection),
+                _ => (Vec3::new(up.x, up.y, -up.z), Lobe::GlossyTransmission),
+            }
+        } else {
+            // Work above, turn back at the end.
+            let up = turn(wo);
+            let h = self.facets.sample_visible_normal(up, u);
+            let (r, t) = self.wanted(up.dot(h), wo, lobes);
+            match pick([r.max_component(), t.max_component()], u_lobe)?.0 {
+                0 => (reflect(up, h), Lobe::GlossyReflection),
+                _ => (refract(up, h, eta_o, eta_i)?, Lobe::GlossyTransmission),
+            }
         };
         // A reflection that goes down, or a refraction that goes up, meets another facet: lost.
-        if (wi.z > 0.0) == lobe.is_transmission() {
+        if wi.z == 0.0 || (wi.z > 0.0) == lobe.is_transmission() {
             return None;
         }
+        let eta = if lobe.is_transmission() { eta_i / eta_o } else { 1.0 };
         let wi = turn(wi);
         let pdf = self.pdf(wo, wi, lobes, mode);
         let disperses = lobe.is_transmission() && self.interface.disperses();

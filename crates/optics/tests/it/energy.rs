@@ -161,6 +161,26 @@ fn compensated_facets_stand_a_white_furnace() {
     near(scattered(&with("roughness=0.5 compensation=true"), Vec3::Z, 0, Mode::Radiance), 1.0, 5e-3);
 }
 
+/// Clear rough glass that gives back what bounces among its facets stands a furnace from both sides.
+#[test]
+fn compensated_glass_stands_a_white_furnace() {
+    for words in ["", "ior=1.2", "ior=2.2", "ior=0.7", "distribution=beckmann"] {
+        for roughness in [0.1, 0.35, 0.6, 1.0] {
+            let (params, _) = set(&format!("roughness={roughness} compensation=true {words}"));
+            let glass = build("rough_dielectric", &params, 1.0);
+            for wo in kirkas_testkit::furnace::directions_above(5, 0.05) {
+                for wo in [wo, -wo] {
+                    let total = scattered(&glass, wo, 0, Mode::Importance);
+                    assert!((total - 1.0).abs() <= 5e-3, "roughness={roughness} {words} from {wo}: {total}");
+                }
+            }
+        }
+    }
+    // Without it a fifth is lost.
+    let dull = build("rough_dielectric", &set("roughness=1").0, 1.0);
+    assert!(scattered(&dull, Vec3::Z, 0, Mode::Importance) < 0.9);
+}
+
 /// Nothing is lost between the coat of white plastic and its base, and panes pass what the echoes of both polarisations leave.
 #[test]
 fn coats_and_panes_keep_their_light() {

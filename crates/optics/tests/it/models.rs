@@ -208,6 +208,8 @@ fn short_sets(type_name: &str) -> &'static [&'static str] {
             "roughness=0.4 anisotropy=0.5 distribution=beckmann",
             "roughness=0.3 anisotropy=-0.7",
             "roughness=0.3 film_thickness=600 film_ior=2.1",
+            "roughness=0.6 compensation=true",
+            "roughness=0.9 distribution=beckmann compensation=true ior=1.9 transmittance=0.5,0.9,0.2",
         ],
         "conductor" => &[
             "ior=0.2 k=3.5,2.5,1.9",
@@ -374,6 +376,7 @@ fn the_list_holds_each_model_once_with_its_rows() {
         "interior",
         "film_thickness",
         "film_ior",
+        "compensation",
     ];
     assert_eq!(rows("rough_dielectric"), rough);
     let textured: Vec<&str> = texture_rows(spec("phong")).map(|r| r.name).collect();
