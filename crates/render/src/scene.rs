@@ -1,5 +1,9 @@
 //! The compiled scene: flat arrays, numbers instead of names, everything a ray may ask.
 
+mod alpha;
+
+pub use alpha::AlphaFilter;
+
 use crate::background::Background;
 use crate::camera::Camera;
 use crate::integrators::{Blocker, MediumStack, ShadowRay};
@@ -8,12 +12,11 @@ use crate::lights::pieces::Pieces;
 use crate::lights::{Lamp, LightEntry, LightSample};
 use crate::materials::Material;
 use crate::media::{Volume, Way};
-use crate::sampler::Sampler;
 use crate::shapes::{Detail, Surface, SurfacePoint};
 use crate::textures::{Patch, RayCone, TexturePoint, Textures};
-use kirkas_accel::{Accel, Hit, HitFilter, NO_INSTANCE};
+use kirkas_accel::{Accel, Hit, NO_INSTANCE};
 use kirkas_geometry::elementary::cbrt;
-use kirkas_geometry::hash::{combine, of_name, unit_f32};
+use kirkas_geometry::hash::combine;
 use kirkas_geometry::rounding::{gamma, offset_origin};
 use kirkas_geometry::transform::transform_normal;
 use kirkas_geometry::{AnimatedTransform, DAffine3, DVec3, Frame, Ray, Vec3};
@@ -583,32 +586,5 @@ impl Scene {
     pub fn alpha(&self, ray: &Ray, hit: &Hit) -> f32 {
         let s = self.surface(ray, hit);
         self.material(&s).alpha(&self.textures, &s.texture)
-    }
-}
-
-/// Decides the coin of partial opacity: hash(sample, branch, pane) < alpha.
-pub struct AlphaFilter<'a, K> {
-    /// Where surfaces are looked up.
-    pub scene: &'a Scene,
-    /// Per ray, by its place in the batch: the hash of its sample and branch.
-    pub key: K,
-}
-
-impl AlphaFilter<'_, ()> {
-    /// The key of a shadow ray: not its path's, since what let that one pass must not let this one pass as well.
-    pub fn shadow_key(sampler: &Sampler, branch: u64) -> u64 {
-        combine(combine(sampler.key(), branch), SHADOW)
-    }
-}
-
-const SHADOW: u64 = of_name("shadow");
-
-impl<K: Fn(usize) -> u64 + Sync> HitFilter for AlphaFilter<'_, K> {
-    fn accept(&self, ray_index: usize, ray: &Ray, hit: &Hit) -> bool {
-        let alpha = self.scene.alpha(ray, hit);
-        let place = u64::from(hit.instance.outermost()) << 32 | u64::from(hit.geometry);
-        let pane = self.scene.part(hit).surface.pane(hit.primitive);
-        let coin = combine(combine((self.key)(ray_index), place), u64::from(pane));
-        unit_f32((coin >> 32) as u32) < alpha
     }
 }

@@ -20,6 +20,10 @@
 //!
 //! Whole numbers of a PLY file are sRGB codes, its floats and those of an OBJ file linear. Triangles smaller than a pixel are not
 //! filtered: the samples of each pixel must average them.
+//!
+//! ## References
+//!
+//! Gouraud 1971, "Continuous Shading of Curved Surfaces" (colours of corners, mixed over each face).
 
 use super::{ColorSource, PatternPoint, TextureInput, Textures, mean};
 use kirkas_scene::spec::NOT_NEGATIVE;
