@@ -46,6 +46,19 @@ pub fn log2(x: f64) -> f64 {
 pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
+/// The greatest whole number that is not above `x`; what is not finite stays. Processors of 2003 have no instruction for it, and what is compiled for
+/// them as well calls a function instead.
+#[inline]
+pub fn floor(x: f64) -> f64 {
+    // From here on there are whole numbers only.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    if !(x.abs() < WHOLE) {
+        return x;
+    }
+    let cut = x as i64 as f64;
+    if cut > x { cut - 1.0 } else { cut }
+}
+
 /// Cube root.
 pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)
@@ -137,6 +150,17 @@ pub fn ln_f32(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn floor_is_that_of_the_platform() {
+        let bits = (0..200_000_u64).map(|i| f64::from_bits(crate::hash::mix64(i)));
+        let near = (-2000..2000).flat_map(|i| [0.25, 0.5, 1.0, 4.5e15 / 2000.0].map(|s| f64::from(i) * s));
+        let odd =
+            [0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, 4_503_599_627_370_495.5, -4_503_599_627_370_495.5, -1e-300];
+        for x in bits.chain(near).chain(odd) {
+            assert!(floor(x) == x.floor() || x.is_nan() && floor(x).is_nan(), "{x:e}");
+        }
+    }
 
     #[test]
     fn the_inverse_of_erf_undoes_it() {

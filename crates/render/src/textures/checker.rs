@@ -34,6 +34,7 @@
 
 use super::taps::Taps;
 use super::{ColorSource, PatternPoint, TextureInput, Textures, mapping};
+use kirkas_geometry::elementary::floor;
 use kirkas_scene::spec::POSITIVE;
 use kirkas_scene::{Kind, ParamSpec, TypeSpec};
 
@@ -88,11 +89,11 @@ fn weight_of_a<const N: usize>(place: [f64; N], axes: [[f64; N]; 2]) -> f64 {
     // All in one square, also under the tents: what is nearest.
     let taps = Taps::along(axes, MOST_TAPS);
     let is_inside = |i: usize| {
-        let (within, reach) = (place[i] - place[i].floor(), taps.reach(i));
+        let (within, reach) = (place[i] - floor(place[i]), taps.reach(i));
         within >= reach && 1.0 - within >= reach
     };
     if (0..N).all(is_inside) {
-        let sum: f64 = place.iter().map(|x| x.floor()).sum();
+        let sum: f64 = place.iter().map(|x| floor(*x)).sum();
         return if sum.rem_euclid(2.0) == 1.0 { 0.0 } else { 1.0 };
     }
     // Nothing left of the waves.
@@ -106,7 +107,7 @@ fn weight_of_a<const N: usize>(place: [f64; N], axes: [[f64; N]; 2]) -> f64 {
 
 /// The square wave that is 1 from 0 to 1 and -1 from 1 to 2, under a tent of full width `2 width`.
 fn filtered_wave(x: f64, width: f64) -> f64 {
-    let x = x - 2.0 * (x * 0.5).floor();
+    let x = x - 2.0 * floor(x * 0.5);
     if width < 1e-6 {
         return if x < 1.0 { 1.0 } else { -1.0 };
     }
@@ -115,7 +116,7 @@ fn filtered_wave(x: f64, width: f64) -> f64 {
 
 /// Of the square wave, without the part that grows evenly: two parabolas per period.
 fn second_integral(x: f64) -> f64 {
-    let x = x - 2.0 * (x * 0.5).floor();
+    let x = x - 2.0 * floor(x * 0.5);
     let half = |x: f64| 0.5 * x * (x - 1.0);
     if x < 1.0 { half(x) } else { -half(x - 1.0) }
 }

@@ -50,7 +50,7 @@
 use super::image_files::ImageFiles;
 use super::texels::{Texels, Wrap, lerp};
 use super::{PatternPoint, TextureInput, mapping};
-use kirkas_geometry::elementary::{log2, sin_cos};
+use kirkas_geometry::elementary::{floor, log2, sin_cos};
 use kirkas_scene::{Diagnostic, Fallback, Kind, ParamSpec, ParamType, TypeSpec};
 use std::sync::Arc;
 
@@ -108,7 +108,7 @@ enum Filter {
 }
 
 /// The most lookups along an ellipse.
-const MOST_TAPS: f64 = 16.0;
+const MOST_TAPS: f64 = 8.0;
 
 impl Image {
     pub(super) fn compile(input: &TextureInput, files: &mut ImageFiles) -> Result<Self, Diagnostic> {
@@ -166,38 +166,52 @@ impl Image {
             return self.texels.level(0).bilinear(self.wrap, uv);
         }
         if self.filter == Filter::Mipmap || !major.is_finite() {
-            return self.between_levels(uv, major);
+            return self.between_levels(uv, Levels::of_width(major));
         }
 
         // Look several times along the ellipse, each time as wide as it is across, or as the lookups are apart.
         let count = (2.0 * major / minor.max(1.0)).ceil().clamp(1.0, MOST_TAPS);
         let width = minor.max(2.0 * major / count);
+        let levels = Levels::of_width(width);
         let (mut sum, mut weights) = ([0.0_f32; 4], 0.0_f32);
         for i in 0..count as u32 {
             // From -1 to 1, with the weights of a tent.
             let along = (2.0 * f64::from(i) + 1.0) / count - 1.0;
             let weight = (1.0 - along.abs()) as f32;
             let place = [uv[0] + long[0] * along, uv[1] + long[1] * along];
-            let value = self.between_levels(place, width);
+            let value = self.between_levels(place, levels);
             sum = std::array::from_fn(|lane| sum[lane] + value[lane] * weight);
             weights += weight;
         }
         sum.map(|lane| lane / weights)
     }
 
-    /// The mean over a square of `width` texels, between the two sizes of the picture that are nearest to it.
-    fn between_levels(&self, uv: [f64; 2], width: f64) -> [f32; 4] {
-        let level = if width > 1.0 { log2(width) } else { 0.0 };
+    /// The mean over a square, between the two sizes of the picture that are nearest to it.
+    fn between_levels(&self, uv: [f64; 2], Levels { finer, part }: Levels) -> [f32; 4] {
         let last = self.texels.last_level();
-        let below = level as usize;
-        if below >= last {
+        if finer >= last {
             return self.texels.level(last).bilinear(self.wrap, uv);
         }
-        let finer = self.texels.level(below).bilinear(self.wrap, uv);
-        let part = (level - level.floor()) as f32;
+        let value = self.texels.level(finer).bilinear(self.wrap, uv);
         if part == 0.0 {
-            return finer;
+            return value;
         }
-        lerp(finer, self.texels.level(below + 1).bilinear(self.wrap, uv), part)
+        lerp(value, self.texels.level(finer + 1).bilinear(self.wrap, uv), part)
+    }
+}
+
+/// Two sizes of a picture.
+#[derive(Clone, Copy)]
+struct Levels {
+    finer: usize,
+    /// How much of the coarser one.
+    part: f32,
+}
+
+impl Levels {
+    /// For a square of `width` texels.
+    fn of_width(width: f64) -> Self {
+        let level = if width > 1.0 { log2(width) } else { 0.0 };
+        Levels { finer: level as usize, part: (level - floor(level)) as f32 }
     }
 }

@@ -4,6 +4,7 @@
 //! each of its texels is the exact mean of what it covers, also where sizes are odd.
 
 use super::mean;
+use kirkas_geometry::elementary::floor;
 use kirkas_images::srgb::{srgb_to_linear, srgb8_to_linear};
 use kirkas_images::{DecodedImage, Pixels};
 use std::sync::OnceLock;
@@ -162,7 +163,7 @@ impl Level {
         let x = self.place(wrap, uv[0], self.width) - 0.5;
         let y = self.place(wrap, uv[1], self.height) - 0.5;
         let (i, j) = (whole(x), whole(y));
-        let (s, t) = ((x - x.floor()) as f32, (y - y.floor()) as f32);
+        let (s, t) = ((x - floor(x)) as f32, (y - floor(y)) as f32);
         let columns = [wrap.apply(i, self.width), wrap.apply(i + 1, self.width)];
         let rows = [wrap.apply(j, self.height), wrap.apply(j + 1, self.height)];
         let texel = |column: Option<usize>, row: Option<usize>| match (column, row) {
@@ -181,7 +182,7 @@ impl Level {
     /// In texels, from the left or from below.
     fn place(&self, wrap: Wrap, at: f64, texels: u32) -> f64 {
         // What repeats is brought near first: then hardly any texel needs a division.
-        let near = if wrap == Wrap::Repeat { at - at.floor() } else { at };
+        let near = if wrap == Wrap::Repeat { at - floor(at) } else { at };
         let at = near * f64::from(texels);
         if at.is_finite() { at } else { 0.0 }
     }
@@ -245,7 +246,7 @@ impl Wrap {
 /// The largest whole number not above `x`, far from the ends of `i64`.
 fn whole(x: f64) -> i64 {
     const FAR: f64 = (1_i64 << 52) as f64;
-    x.floor().clamp(-FAR, FAR) as i64
+    floor(x).clamp(-FAR, FAR) as i64
 }
 
 pub(super) fn lerp(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
