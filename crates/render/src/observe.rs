@@ -179,9 +179,27 @@ pub enum Fate {
 pub struct Notes {
     pub(crate) are_wanted: bool,
     pub(crate) list: Vec<Note>,
+    /// A ray of which it is not yet known what becomes.
+    held: Option<Sent>,
 }
 
 impl Notes {
+    /// A ray that a surface would send; [`Notes::settle`] says what becomes of it.
+    #[inline(always)]
+    pub(crate) fn hold(&mut self, sent: impl FnOnce() -> Sent) {
+        if self.are_wanted {
+            self.held = Some(sent());
+        }
+    }
+
+    /// What became of the ray that was held.
+    #[inline(always)]
+    pub(crate) fn settle(&mut self, survival: f32, fate: Fate) {
+        if let Some(sent) = self.held.take().filter(|_| self.are_wanted) {
+            self.list.push(Note::Sent(Sent { survival, fate, ..sent }));
+        }
+    }
+
     /// The note is only made where it is wanted.
     #[inline(always)]
     pub fn add(&mut self, note: impl FnOnce() -> Note) {

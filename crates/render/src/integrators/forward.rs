@@ -10,6 +10,7 @@ use crate::frames::bodies_around;
 use crate::lights::LightEntry;
 use crate::lights::emit::{BoundingSphere, share_at};
 use crate::media::{FlightEnd, Volume, Way};
+use crate::observe::Notes;
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{AlphaFilter, Scene, SurfaceHit};
 use crate::statistics::Statistics;
@@ -222,7 +223,7 @@ impl<'a> Tracer<'a> {
                     if path.depth >= self.most_bounces {
                         return None;
                     }
-                    let (next, _) = Particle::new(volume, &path, position).go_on(&path, sampler)?;
+                    let next = Particle::new(volume, &path, position).go_on(&path, sampler, &mut Notes::default())?;
                     return flying.survive(next, flying.path.throughput.max_component());
                 }
             }

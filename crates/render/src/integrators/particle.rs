@@ -70,13 +70,14 @@ impl<'a> Particle<'a> {
         ray
     }
 
-    /// The path after this particle, and how it was chosen.
-    pub(super) fn go_on(&self, path: &PathState, sampler: &Sampler) -> Option<(PathState, Sent)> {
+    /// The path after this particle, of which `notes` holds how it was chosen.
+    pub(super) fn go_on(&self, path: &PathState, sampler: &Sampler, notes: &mut Notes) -> Option<PathState> {
         let u_lane = sampler.one(combine(path.branch, LOBE));
         let u = sampler.pair(combine(path.branch, DIRECTION));
         let s = self.phase.sample(&path.lanes, self.shares, self.wo, u_lane, u)?;
         let origin = self.position.as_vec3();
-        let next = PathState {
+        notes.hold(|| Sent { bsdf: s.value, pdf: s.pdf, cosine: 1.0, fate: Fate::Goes, ..Sent::NOWHERE });
+        Some(PathState {
             ray: Ray { origin, direction: s.wi, t_min: 0.0, t_max: f32::INFINITY, mask: SECONDARY, ..path.ray },
             throughput: path.throughput * s.value / s.pdf,
             depth: path.depth + 1,
@@ -87,8 +88,7 @@ impl<'a> Particle<'a> {
             travelled: 0.0,
             last: Some(LastVertex { position: self.position, normal: DVec3::ZERO, pdf: s.pdf }),
             ..*path
-        };
-        Some((next, Sent { bsdf: s.value, pdf: s.pdf, cosine: 1.0, fate: Fate::Goes, ..Sent::NOWHERE }))
+        })
     }
 }
 

@@ -142,34 +142,27 @@ impl Path {
             return;
         }
         out.shadow_rays.extend(particle.ask_light(scene, path, sampler, &mut out.notes));
-        match particle.go_on(path, sampler) {
-            Some((next, sent)) => play_roulette(scene, next, sent, sampler, self.roulette_depth, out),
+        match particle.go_on(path, sampler, &mut out.notes) {
+            Some(next) => play_roulette(scene, next, sampler, self.roulette_depth, out),
             None => out.end = Some(PathEnd::Absorbed),
         }
     }
 }
 
-/// Send the path on, or end it by chance. `sent` says how it goes on.
+/// Send the path on, or end it by chance.
 #[inline(always)]
-fn play_roulette(
-    scene: &Scene,
-    mut next: PathState,
-    sent: Sent,
-    sampler: &Sampler,
-    roulette_depth: u32,
-    out: &mut StepOutput,
-) {
+fn play_roulette(scene: &Scene, mut next: PathState, sampler: &Sampler, roulette_depth: u32, out: &mut StepOutput) {
     let mut survival = 1.0;
     if next.depth >= roulette_depth {
         survival = (next.throughput.max_component() * scene.gain(&next.media)).min(MOST_CHANCE);
         if sampler.one(combine(next.branch, ROULETTE)) >= survival {
-            out.notes.add(|| Note::Sent(Sent { survival, fate: Fate::Roulette, ..sent }));
+            out.notes.settle(survival, Fate::Roulette);
             out.end = Some(PathEnd::Roulette);
             return;
         }
         next.throughput *= 1.0 / survival;
     }
-    out.notes.add(|| Note::Sent(Sent { survival, ..sent }));
+    out.notes.settle(survival, Fate::Goes);
     out.paths.push(next);
 }
 
@@ -338,12 +331,12 @@ impl<'a> Vertex<'a> {
         out: &mut StepOutput,
     ) {
         match self.go_on(scene, path, sampler, lobes, &mut out.notes) {
-            Some((next, sent)) => play_roulette(scene, next, sent, sampler, roulette_depth, out),
+            Some(next) => play_roulette(scene, next, sampler, roulette_depth, out),
             None => out.end = Some(PathEnd::Absorbed),
         }
     }
 
-    /// The path after this surface by one of `lobes`, and how it was chosen; `None`, which is noted, if the surface swallows it.
+    /// The path after this surface by one of `lobes`, of which `notes` holds how it was chosen; `None` if the surface swallows it.
     #[inline(always)]
     pub(super) fn go_on(
         &self,
@@ -352,7 +345,7 @@ impl<'a> Vertex<'a> {
         sampler: &Sampler,
         lobes: LobeSet,
         notes: &mut Notes,
-    ) -> Option<(PathState, Sent)> {
+    ) -> Option<PathState> {
         let hit = self.hit;
         // One lobe leaves nothing to choose.
         let u_lobe = if (self.lobes & lobes).is_single() { 0.0 } else { sampler.one(combine(path.branch, LOBE)) };
@@ -371,7 +364,8 @@ impl<'a> Vertex<'a> {
             return None;
         }
         let last = LastVertex { position: hit.position, normal: self.normal, pdf: s.pdf };
-        let next = PathState {
+        notes.hold(|| Sent::of(&s));
+        Some(PathState {
             lanes: s.lanes(path.lanes),
             ray: hit.ray_towards(direction, &path.ray),
             throughput,
@@ -383,8 +377,7 @@ impl<'a> Vertex<'a> {
             passed: 0,
             travelled: 0.0,
             last: (!s.lobe.is_delta()).then_some(last),
-        };
-        Some((next, Sent::of(&s)))
+        })
     }
 }
 

@@ -32,7 +32,7 @@ use super::forward::{Arrival, Place, Receiver, Tracer, usual_count};
 use super::path::{self, MAX_DEPTH, ROULETTE_DEPTH, Vertex};
 use super::{Integrator, Pass, PathState, Shared, StepOutput, crossing};
 use crate::camera::CameraSample;
-use crate::observe::{Note, Saw, Shone};
+use crate::observe::{Fate, Note, Saw, Shone};
 use crate::render::Renderer;
 use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfaceHit};
@@ -186,8 +186,8 @@ impl Integrator for Gatherer {
             // ... up to the first matte surface: there direct light is asked for and looked for, the rest is gathered.
             self.gather(&path, &vertex, out);
             out.shadow_rays.extend(vertex.ask_light(scene, &path, sampler, LobeSet::NON_DELTA, &mut out.notes));
-            if let Some((probe, sent)) = vertex.go_on(scene, &path, sampler, LobeSet::NON_DELTA, &mut out.notes) {
-                out.notes.add(|| Note::Sent(sent));
+            if let Some(probe) = vertex.go_on(scene, &path, sampler, LobeSet::NON_DELTA, &mut out.notes) {
+                out.notes.settle(1.0, Fate::Goes);
                 let branch = combine(path.branch, PROBE);
                 out.paths.push(PathState { depth: self.settings.max_depth.max(probe.depth), branch, ..probe });
             }
