@@ -109,9 +109,7 @@ fn most_blocking(e: &Explanation) -> Option<(String, String, usize)> {
 /// A share in words that fit it.
 pub(crate) fn percent(share: f64) -> String {
     let p = share * 100.0;
-    if p >= 99.95 || p == 0.0 {
-        format!("{p:.0} %")
-    } else if p >= 10.0 {
+    if p >= 10.0 || p == 0.0 {
         format!("{p:.0} %")
     } else if p >= 0.1 {
         format!("{p:.1} %")
