@@ -5,6 +5,8 @@ use crate::finding::findings;
 use crate::record::Explanation;
 use crate::story::{stories, summary};
 use crate::wireframe::wireframe;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use kirkas_geometry::Vec3;
 use kirkas_render::Scene;
 use serde_json::{Value, json};
@@ -27,10 +29,10 @@ pub fn page(e: &Explanation, scene: &Scene, picture: Option<(&[u8], u32, u32)>) 
         "summary": summary(e),
         "findings": findings(e).iter().map(|f| json!({ "code": f.code, "text": f.text, "cure": f.cure })).collect::<Value>(),
         "stories": stories(e).iter().map(|s| json!({ "text": s.text, "share": s.share, "samples": s.samples })).collect::<Value>(),
-        "lines": base64(&numbers),
+        "lines": BASE64.encode(&numbers),
         "camera": camera(e),
         "size": size,
-        "picture": picture.map(|(png, width, height)| json!({ "png": base64(png), "width": width, "height": height })),
+        "picture": picture.map(|(png, width, height)| json!({ "png": BASE64.encode(png), "width": width, "height": height })),
     });
     // Nothing in a text may end the script.
     let data = data.to_string().replace('<', "\\u003c");
@@ -70,39 +72,4 @@ fn shortened(e: &Explanation) -> Value {
     }
     value["all_samples"] = json!(whole);
     value
-}
-
-/// RFC 4648.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let n = (0..3).fold(0_u32, |n, i| n << 8 | u32::from(chunk.get(i).copied().unwrap_or(0)));
-        for i in 0..4 {
-            let digit = DIGITS[(n >> (18 - 6 * i)) as usize & 63];
-            text.push(if i <= chunk.len() { digit as char } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    #[test]
-    fn base64_is_that_of_the_standard() {
-        // RFC 4648, section 10.
-        for (bytes, text) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 }

@@ -171,8 +171,8 @@ impl Whitted {
             return;
         }
         for (light, group) in &scene.ambient {
-            let radiance = albedo * light.at(&path.lanes) * self.ambient;
-            out.notes.add(|| Note::Saw(Saw { what: Shone::Ambient, radiance, weight: 1.0 }));
+            let radiance = || albedo * light.at(&path.lanes) * self.ambient;
+            out.notes.add(|| Note::Saw(Saw { what: Shone::Ambient, radiance: radiance(), weight: 1.0 }));
             out.contributions.push((path.throughput * albedo * light.at(&path.lanes) * self.ambient, *group));
         }
     }
@@ -237,8 +237,10 @@ impl Whitted {
                     _ => weight,
                 };
                 if self.shadows == Shadows::None {
-                    let radiance = f * s.light * wi.z.abs();
-                    out.notes.add(|| Note::Saw(Saw { what: Shone::Light, radiance, weight: 1.0 / count as f32 }));
+                    let radiance = || f * s.light * wi.z.abs();
+                    let weight_of_one = 1.0 / count as f32;
+                    out.notes
+                        .add(|| Note::Saw(Saw { what: Shone::Light, radiance: radiance(), weight: weight_of_one }));
                     out.contributions.push((weight, light.group));
                     continue;
                 }

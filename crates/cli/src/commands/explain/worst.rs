@@ -6,10 +6,11 @@ use crate::output::print_out;
 use crate::problem::{Outcome, Problem};
 use crate::progress::Progress;
 use crate::report;
+use indicatif::ProgressBar;
 use kirkas_explain::{findings, summary};
 use kirkas_images::RgbImage;
+use kirkas_render::Control;
 use kirkas_render::film::Film;
-use kirkas_render::render::Undisturbed;
 
 /// A pixel, and what makes it stand out.
 struct Candidate {
@@ -80,13 +81,23 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
+/// Shows how far a render is.
+struct Bar(ProgressBar);
+
+impl Control for Bar {
+    fn progress(&self, samples: u64) {
+        self.0.inc(samples);
+    }
+}
+
 /// By the variance of a picture that is rendered for it.
 fn of_film(args: &Explain, source: &Source) -> Vec<Candidate> {
     let prepared = &source.prepared;
     let mut film = Film::new(prepared.film.clone());
-    let bar = Progress::new(args.quiet, None).picture(1, 0);
-    prepared.renderer(256).render(&mut film, 0..prepared.samples, &Undisturbed);
-    bar.finish_and_clear();
+    let pixels = prepared.film.crop.area() as u64;
+    let bar = Bar(Progress::new(args.quiet, None).picture(pixels * u64::from(prepared.samples), 0));
+    prepared.renderer(256).render(&mut film, 0..prepared.samples, &bar);
+    bar.0.finish_and_clear();
     film.pixels()
         .map(|(x, y, tile, i)| {
             let invalid = tile.counts[i].invalid;
